@@ -34,9 +34,20 @@ CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; a mistake of the user's ends it with one line each and exit code 1.
+    """Run a command; a mistake of the user ends it with one line for each mistake and exit code 1.
 
-    So does a file or folder that the system refuses. Ctrl-C ends it with one line and exit code INTERRUPTED.
+    A file or folder that the system refuses ends it in the same way. Ctrl-C ends it with one line and exit
+    code INTERRUPTED.
+
+    Parameters
+    ----------
+    arguments : Sequence[str] or None
+        Arguments behind the program's name; those of the process if None.
+
+    Returns
+    -------
+    int
+        Exit code; 0 means success.
     """
     options = parser().parse_args(arguments)
     try:
@@ -74,6 +85,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
+    """Build the parser of the command line, with a subcommand for each command.
+
+    Returns
+    -------
+    Parser
+        Parser whose result holds the function of the chosen command as `command`.
+    """
     top = Parser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
     commands = top.add_subparsers(required=True, metavar="command", dest="name")
@@ -153,7 +171,13 @@ LIMITS = {
 
 
 def installed_version() -> str:
-    """Version of the package, as far as it is installed at all."""
+    """Return the version of the installed package.
+
+    Returns
+    -------
+    str
+        The version, or `unknown: this folder is not installed`.
+    """
     try:
         return version("facegear")
     except PackageNotFoundError:

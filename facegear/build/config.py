@@ -312,6 +312,6 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:
         stiffness["torque_n_m"] = config.contact.torques_n_m[-1]
     if config.transmission is not None:
-        whole = with_backlash(config.tooth_pair, config.transmission)
-        values["transmission"]["backlash_um"] = whole.backlash_um
+        complete = with_backlash(config.tooth_pair, config.transmission)
+        values["transmission"] = complete.model_dump(mode="json")
     return values

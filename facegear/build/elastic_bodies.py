@@ -335,7 +335,7 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
-    name, value, requirement = KEYS[error.quantity], error.value, error.allowed.replace("`", "")
+    name, value, requirement = KEYS[error.quantity], error.value, error.requirement.replace("`", "")
     if error.quantity == THINNEST:
         name, value = _thinnest_key(body)
         requirement = f"such that the thinnest wall of the section, now {error.value} mm, is {requirement}"

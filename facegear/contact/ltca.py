@@ -28,7 +28,7 @@ from facegear.progress import Progress
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import pinion_angle
-from facegear.teeth.unloaded import unloaded_contact, unloaded_motion
+from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,10 @@
-"""Forces of all contacts on the nodes of both surfaces, and their resultants on the bodies."""
+"""Forces of all contacts on the nodes of both surfaces, and their resultants on the bodies.
+
+Forces and moment of a mesh on its bodies, from the touching loads, averaged over the mesh cycle. They are the
+sum of f . gap_p over all loads, gap_p the derivative of their gaps by a motion p of the pinion: each load
+acts along the normal of the pinion where it is. The derivative of the whole energy of the contact has f . C_p
+f / 2 as well, as other parts of the teeth give way differently.
+"""
 
 from collections.abc import Sequence
 

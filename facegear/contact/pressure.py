@@ -5,6 +5,10 @@ that a plane across the pinion's axis carries does not. So the pressure is that 
 and the exact relative curvature. Where a tip edge or an end of the face is closer than the strip's
 half-width, pressure has no limit as a mesh is refined, and only the line load is given. Load in a fillet
 lies beside no contact line and is left out.
+
+Contact in fillets kept apart from that of the flanks. Where a tip runs into the fillet of the other gear, a
+plane across the pinion's axis carries load at two places: along the contact line of the flanks, and in the
+fillet, where an edge presses and pressure has no limit as a mesh is refined.
 """
 
 from collections.abc import Mapping, Sequence

@@ -60,11 +60,26 @@ class Variable:
 
 
 def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
-    """Write the FMU; it starts at rest under the machine's torques. Returns the path.
+    """Write the machine as an FMU for co-simulation (FMI 3.0) that starts at rest under the machine's
+    torques.
 
-    Inputs, held through a step: speed of the pinions, torque on each body; the rigid rotation of all bodies
-    together is left out, so that only their balance acts. Outputs: deflection (m) and elastic force (N) of
-    every contact, force of every body on its bearing (N).
+    Inputs, which are held through a step: speed of the pinions, rpm, and torque on each body, N m. The rigid
+    rotation of all bodies together is left out, so that only the balance of the torques acts. Outputs:
+    deflection, m, and elastic force, N, of every contact, and force of every body on its bearing, N.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions at the start, rpm.
+
+    Returns
+    -------
+    Path
+        The path.
     """
     path, model = Path(path), build_model(machine)
     header = _header(model, speed_rpm)
@@ -141,10 +156,21 @@ def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
 
 
 def unique_words(names: Sequence[str]) -> list[str]:
-    """Return each name with `_` for all but letters and digits; words that become equal are numbered.
+    """Turn names into identifiers: `_` replaces all but letters and digits, and equal identifiers are
+    numbered.
 
     FMI asks for unique names of variables. The first of equal words stays as it is; the others end in the
     smallest number from 2 on that no other variable has.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of variables, such as `deflection_left input/upper`.
+
+    Returns
+    -------
+    list of str
+        One identifier for each name, in the same order.
     """
     words = [re.sub(r"\W+", "_", name) for name in names]
     used_words = set(words)

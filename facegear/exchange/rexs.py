@@ -1,4 +1,7 @@
-"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data)."""
+"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data).
+
+REXS has no face gear: what is lost stands in LOST, and in a comment of every file.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -101,7 +104,24 @@ class _Model:
 
 
 def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
-    """Write a gear unit; `date` (ISO 8601) and `version` of this program stand in it. Returns the path."""
+    """Write a gear unit as a REXS 2.0 file in XML.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    unit : Unit
+        The gear unit.
+    date : str
+        Date of the file by ISO 8601.
+    version : str
+        Version of this program.
+
+    Returns
+    -------
+    Path
+        The path.
+    """
     model = _Model(date, version)
     whole, casing = model.component("gear_unit", "gear unit"), model.component("gear_casing", "casing")
     stuff = (("elastic_modulus", "MPa", unit.young), ("poisson_ratio", "none", unit.poisson))
@@ -142,11 +162,25 @@ def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -
 
 
 def read_rexs(path: str | Path) -> Unit:
-    """The gear unit of a file, whoever wrote it: every shaft, with its first cylindrical gear and bearing.
+    """Read the gear unit of a REXS file of any program: every shaft, with its first cylindrical gear and
+    bearing.
 
-    Raises FacegearError for what is no REXS file in XML, for an attribute that is no number or has another
-    unit than REXS gives it, for ids that stand twice, for a part that a relation names and that is not there,
-    for a helical gear, and for a gear without number of teeth or module.
+    Parameters
+    ----------
+    path : str or Path
+        REXS file in XML.
+
+    Returns
+    -------
+    Unit
+        The gear unit.
+
+    Raises
+    ------
+    FacegearError
+        For a file that is no REXS file in XML, an attribute that is no number or has another unit than REXS
+        gives it, an id that occurs twice, a part that a relation names and the file lacks, a helical gear,
+        and a gear without number of teeth or module.
     """
     _refuse_other_forms(Path(path))
     try:

@@ -21,10 +21,25 @@ def write(
     node_sets: Mapping[str, Integers],
     surfaces: Mapping[str, Sequence[tuple[int, str]]],
 ) -> None:
-    """Nodes (N, 3) in m, C3D20 elements (M, 20) of node indices, sets of node indices.
+    """Write a mesh of C3D20 elements as an input deck.
 
-    surfaces: named lists of (element index, face S1..S6). Nodes that no element uses are left out; labels are
-    index + 1. Lengths are in m, so a modulus belongs in Pa. CalculiX reads at most 20 characters a number.
+    Nodes that no element uses are left out; labels are index + 1. Lengths are in m, so that a modulus must be
+    given in Pa. CalculiX reads at most 20 characters a number.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    title : str
+        Heading of the deck.
+    nodes : (N, 3) array
+        Coordinates, m.
+    elements : (M, 20) array of int
+        Indices of the nodes of each element.
+    node_sets : mapping of str to (K,) array of int
+        Node indices of each named set.
+    surfaces : mapping of str to sequence of (int, str)
+        Element index and face, S1 to S6, of each facet of a named surface.
     """
     used_nodes = np.unique(elements)
     with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
@@ -41,7 +56,7 @@ def write(
 
 
 def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
-    """A line for each row of a table, all of them formatted at once."""
+    """Write a line for each row of a table, all lines formatted at once."""
     stream.write(line * len(table) % tuple(table.ravel().tolist()))
 
 

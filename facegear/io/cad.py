@@ -30,7 +30,15 @@ SEWN = 1e-6
 
 
 def write_stl(path: str | Path, corners: Array) -> None:
-    """Triangles (n, 3, 3) in m as binary STL in mm, corners to the nanometre."""
+    """Write triangles as a binary STL file in mm, corners rounded to the nanometre.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    corners : (n, 3, 3) array
+        Corners of each triangle, m.
+    """
     points, cells = np.unique(
         np.round(1e3 * corners, NANOMETRES).reshape(-1, 3) + 0.0, axis=0, return_inverse=True
     )
@@ -40,10 +48,26 @@ def write_stl(path: str | Path, corners: Array) -> None:
 
 
 def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
-    """Write one solid in mm, sewn of a bicubic B-spline through each patch (n, m, 3) in m.
+    """Write one solid in mm that is sewn of a bicubic B-spline surface through each patch.
 
-    The solid is the file's only product and has the name `name`, ASCII without apostrophes. Returns its
-    volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches do not close.
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    patches : sequence of (n, m, 3) arrays
+        Points of each patch, m; the patches close around the solid.
+    name : str
+        Name of the solid, which is the file's only product: ASCII without apostrophes.
+
+    Returns
+    -------
+    float
+        Volume of the solid as OpenCASCADE integrates it, to a relative error of about 2e-5, m^3.
+
+    Raises
+    ------
+    NotConverged
+        If the patches do not close.
     """
     with gmsh_session(name):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", SEWN)
@@ -89,7 +113,9 @@ def _silent() -> Iterator[None]:
 
 
 def _surface(points: Array) -> int:
-    """The B-spline surface through a grid of points, parameters evenly spaced."""
+    """Add the B-spline surface through a grid of points (n, m, 3) in mm, parameters evenly spaced; return its
+    tag.
+    """
     poles, knots, degrees = points, [], []
     for axis in (0, 1):
         count = points.shape[axis]

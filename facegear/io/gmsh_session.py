@@ -15,10 +15,21 @@ NO_HANDLERS = "-no_signal_handler"
 
 @contextmanager
 def gmsh_session(name: str) -> Iterator[None]:
-    """A session with one empty model of this name. gmsh is global: one at a time.
+    """Open a session of gmsh with one empty model. gmsh is global: one session at a time.
 
     PETSc, which gmsh brings, takes over signals when it starts and leaves them at the system's default when
-    it ends: a broken pipe would then kill the process, and faulthandler be silent. It is asked not to.
+    it ends: a broken pipe would then kill the process, and faulthandler be silent. An environment variable
+    tells it not to.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+
+    Yields
+    ------
+    None
+        Once, while the session is open.
     """
     with _asked_of_petsc():
         gmsh.initialize(interruptible=False)
@@ -32,6 +43,7 @@ def gmsh_session(name: str) -> Iterator[None]:
 
 @contextmanager
 def _asked_of_petsc() -> Iterator[None]:
+    """Set the environment variable by which PETSc leaves signals alone, and restore it at the end."""
     before = os.environ.get(VARIABLE)
     os.environ[VARIABLE] = f"{before or ''} {NO_HANDLERS}".strip()
     try:

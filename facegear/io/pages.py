@@ -10,7 +10,20 @@ with extras_named():
 
 
 def render(template: Path, **values: Any) -> str:
-    """The page as text. Values are escaped; a name that the template uses and `values` lacks is an error."""
+    """Fill a template.
+
+    Parameters
+    ----------
+    template : Path
+        Jinja2 template.
+    **values : Any
+        Values by the names that the template uses; texts are escaped. A name that is missing is an error.
+
+    Returns
+    -------
+    str
+        The page.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template.parent),
         autoescape=True,

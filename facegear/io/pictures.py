@@ -11,7 +11,23 @@ WHOLE_SVG, TAIL = re.compile(r"(</svg>|<svg[^<]*/>)\s*$"), 1000
 
 
 def read_svg(path: Path) -> str:
-    """Return the text of a drawing. Raises CorruptFile if it is missing, altered or cut off."""
+    """Return the text of a drawing.
+
+    Parameters
+    ----------
+    path : Path
+        File to read (svg).
+
+    Returns
+    -------
+    str
+        The text.
+
+    Raises
+    ------
+    CorruptFile
+        If the file is missing, altered or cut off.
+    """
     verify(path)
     try:
         text = path.read_text(encoding="utf-8")

@@ -1,4 +1,9 @@
-"""Tables of loss, heat, film and scuffing of the pair, and its friction as a disturbance of motion."""
+"""Tables of loss, heat, film and scuffing of the pair, and its friction as a disturbance of motion.
+
+Friction of a mesh as a disturbance of the motion: its force and moments over the force of the mesh. At every
+loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at each
+position of a pitch keep the sign that sliding has there: it turns at the pitch line.
+"""
 
 from collections.abc import Sequence
 from math import pi

@@ -5,7 +5,7 @@ search, each pinion eliminated by itself.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -108,60 +108,51 @@ def settle_all(
 
 
 @dataclass(frozen=True, eq=False)
-class _Frame:
-    """Data shared by machines with the same bodies, bearings and meshes: has_blocks() without loads,
-    static_unknowns(), and the compiled problem without clearance and loads.
-    """
-
-    blocks: bool
-    coordinates: Integers
-    scale: Array
-    springs: Springs
-
-
-def has_blocks(machine: Machine) -> bool:
-    """Whether bearings join no pinion with anything else, and each flank touches one pinion alone.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-
-    Returns
-    -------
-    bool
-        True where the compiled solver of block_statics applies.
-    """
-    frame = _frame_of(machine)
-    is_unknown = np.zeros(machine.linear.size, dtype=bool)
-    is_unknown[frame.coordinates] = True
-    return frame.blocks and not machine.linear.loads[~is_unknown].any()
-
-
-def static_springs(machine: Machine) -> Springs:
-    """Return the compiled problem in the unknowns of `static_unknowns`.
-
-    Parameters
-    ----------
-    machine : Machine
-        A machine that `has_blocks`.
-
-    Returns
-    -------
-    Springs
-        m and N.
-    """
-    frame, linear = _frame_of(machine), machine.linear
-    loads = linear.loads[frame.coordinates] * frame.scale
-    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, loads=loads)
-
-
-def static_unknowns(machine: Machine) -> tuple[Integers, Array]:
-    """Return the degrees of freedom that the compiled problem keeps, and the size of its unknowns.
+class StaticBlocks:
+    """The compiled problem of a machine, and how its unknowns map to the degrees of freedom.
 
     The pinions' motion along their own axes is left out, as no mesh feels it. If one gear may rock, another
     that may not is given tilts of no length. Coordinates beside those of the layout come last.
 
+    Attributes
+    ----------
+    springs : Springs
+        The compiled problem, m and N.
+    coordinates : (n,) array of int
+        Degree of freedom of each unknown.
+    scale : (n,) array
+        What 1 m of each unknown is in m or rad.
+    size : int
+        Number of all degrees of freedom.
+    """
+
+    springs: Springs
+    coordinates: Integers
+    scale: Array
+    size: int
+
+    def displacements(self, solution: Array) -> Array:
+        """Return the displacements of all degrees of freedom.
+
+        Parameters
+        ----------
+        solution : (K, n) array
+            Unknowns at K positions, m.
+
+        Returns
+        -------
+        (K, dof) array
+            m and rad; 0 for what is left out.
+        """
+        displacements = np.zeros((len(solution), self.size))
+        np.add.at(displacements.T, self.coordinates, (solution * self.scale).T)
+        return displacements
+
+
+def static_blocks(machine: Machine) -> StaticBlocks | None:
+    """Return the compiled problem where bearings join no pinion with anything else, each flank touches one
+    pinion alone, and no degree of freedom that is left out is loaded.
+
     Parameters
     ----------
     machine : Machine
@@ -169,30 +160,35 @@ def static_unknowns(machine: Machine) -> tuple[Integers, Array]:
 
     Returns
     -------
-    pair of (n,) arrays
-        Indices of the degrees of freedom, and what 1 m of each unknown is in m or rad.
+    StaticBlocks or None
+        None where the compiled solver does not apply.
     """
-    frame = _frame_of(machine)
-    return frame.coordinates, frame.scale
-
-
-def _frame_of(machine: Machine) -> _Frame:
-    return _frame(machine.without_errors)
+    blocks, loads = _unloaded_blocks(machine.without_errors), machine.linear.loads
+    if blocks is None or np.delete(loads, blocks.coordinates).any():
+        return None
+    springs = blocks.springs._replace(
+        clearance=machine.imperfections.bearing_clearance,
+        loads=loads[blocks.coordinates] * blocks.scale,
+    )
+    return replace(blocks, springs=springs)
 
 
 @lru_cache(maxsize=8)
-def _frame(machine: Machine) -> _Frame:
+def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
+    """Return static_blocks() without clearance and loads; machines with the same bodies, bearings and meshes
+    share it.
+    """
     layout, linear = machine.layout, machine.linear
-    stiffness, rows, lengths = linear.stiffness, linear.rows, linear.lengths
-    coordinates, scale = _select_unknowns(layout, lengths)
-    blocks, springs = (
-        _blocks(layout, coordinates, stiffness, rows),
-        _springs(layout, coordinates, scale, stiffness, rows),
+    stiffness, rows = linear.stiffness, linear.rows
+    coordinates, scale = _select_unknowns(layout, linear.lengths)
+    if not _has_blocks(layout, coordinates, stiffness, rows):
+        return None
+    return StaticBlocks(
+        _springs(layout, coordinates, scale, stiffness, rows), coordinates, scale, linear.size
     )
-    return _Frame(blocks, coordinates, scale, springs)
 
 
-def _blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:
+def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:
     size, pinions = len(stiffness), len(layout.pinions)
     group = np.full(size, -1)
     group[coordinates[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)

@@ -12,9 +12,9 @@ from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import Machine
 
 
-def _lags(machine: Machine) -> list[float]:
-    """Return the lag of every mesh in the mesh cycle, in mesh periods."""
-    return [float(lag) for lag in np.round(machine.phases, 12) % 1.0]
+def _lags(phases: Array) -> tuple[float, ...]:
+    """Return the lag of every mesh in the mesh cycle from its phase, both in mesh periods."""
+    return tuple((np.round(phases, 12) % 1.0).tolist())
 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:
@@ -113,7 +113,7 @@ def _early_teeth(machine: Machine, cycles: Array) -> Array:
     early = np.zeros((2, cycles.size, len(layout.meshes)))
     if teeth is None:
         return _beside(early)
-    for mesh, lag in enumerate(_lags(machine)):
+    for mesh, lag in enumerate(_lags(machine.phases)):
         positions = []
         for tooth in teeth_in_mesh(layout, mesh, cycles):
             apart = cycles - lag - tooth

@@ -16,7 +16,7 @@ from facegear.arrays import Array, Mask
 from facegear.by_content import kept_by_content
 from facegear.harmonics import Harmonics
 from facegear.machine.flank_errors import _flank_series, _lags, constant_errors, error_series
-from facegear.machine.machine import FlankTables, Machine, OpenFlanks
+from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
 from facegear.meshing.force_table import ForceTable, shift_tables
 from facegear.meshing.law import MeshLaw
 from facegear.meshing.linear import linear_law
@@ -43,20 +43,20 @@ def significant_forces(forces: Array) -> Array:
     return np.where(size > NO_LOAD * size.max(initial=0.0), forces, 0.0)
 
 
-def flank_gaps(machine: Machine) -> Array:
-    """Return half the backlash b of every flank.
+def flank_edges(machine: Machine) -> Array:
+    """Return the deflection at which each flank touches: half the backlash, and its constant error.
 
     Parameters
     ----------
     machine : Machine
-        The machine.
+        A machine whose meshes have two flanks each.
 
     Returns
     -------
     (2 meshes,) array
         m, drive flanks first.
     """
-    return np.tile(machine.half_backlash, 2)
+    return np.tile(machine.half_backlash, 2) + constant_errors(machine)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,19 +93,19 @@ def mesh_contacts(machine: Machine) -> MeshContacts:
 
 def _flank_contacts(machine: Machine) -> MeshContacts:
     """Return the contacts of all flanks; errors that never change stand in their edges."""
-    upper = flank_gaps(machine) + constant_errors(machine)
-    damping = flank_dampers(machine, np.ones(upper.size, dtype=bool))
+    upper = flank_edges(machine)
+    damping = flank_dampers(machine.damping, np.ones(upper.size, dtype=bool))
     never = np.full(upper.size, -np.inf)
     return MeshContacts(flank_law(machine), error_series(machine), never, upper, damping)
 
 
-def flank_dampers(machine: Machine, contact_mask: Mask) -> Array:
+def flank_dampers(damping: Damping, contact_mask: Mask) -> Array:
     """Return the dampers that act on the flanks.
 
     Parameters
     ----------
-    machine
-        A machine whose meshes have two flanks each.
+    damping : Damping
+        Damping of a machine whose meshes have two flanks each.
     contact_mask : (2 meshes,)
         Which flanks are in contact, drive flanks first.
 
@@ -115,9 +115,8 @@ def flank_dampers(machine: Machine, contact_mask: Mask) -> Array:
         Damping of each flank, shape (2 meshes,), N s/m. Where it acts on open flanks, the two flanks of a
         mesh share it, so that the rotation alone meets the whole of it; or the drive flank has all of it.
     """
-    meshes, damping = contact_mask.size // 2, machine.damping
     if damping.open_flanks is OpenFlanks.MESH_DEFLECTION:
-        return np.repeat([damping.mesh, 0.0], meshes)
+        return np.repeat([damping.mesh, 0.0], contact_mask.size // 2)
     if damping.open_flanks is OpenFlanks.ALWAYS:
         return np.full(contact_mask.size, 0.5 * damping.mesh)
     return np.where(contact_mask, damping.mesh, 0.0)
@@ -160,7 +159,7 @@ def _flank_law(machine: Machine) -> MeshLaw:
     if machine.tables is None:
         return _linear_law(machine.mesh_stiffness, machine.phases)
     gears, factors = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
-    return _law_of_tables(machine.tables, gears, factors, machine.own_softening, tuple(_lags(machine)))
+    return _law_of_tables(machine.tables, gears, factors, machine.own_softening, _lags(machine.phases))
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
@@ -235,7 +234,7 @@ def line_law(machine: Machine) -> MeshLaw:
     """
     if machine.law is not None:
         return machine.law
-    lags = tuple(_lags(machine))
+    lags = _lags(machine.phases)
     if machine.tables is None:
         return _line_linear_law(machine.stiffness, lags)
     return _line_law_of_tables(tuple(machine.tables[g].drive for _, g in machine.layout.meshes), lags)

@@ -1,4 +1,9 @@
-"""The linear part of a machine: bodies, bearings, mesh directions and their matrices."""
+"""The linear part of a machine: bodies, bearings, mesh directions and their matrices.
+
+    M q'' + (D + W G) q' + (K + W N + W^2 P) q = torques + forces - rows^T F,   D = a M + b K + dampers
+
+W is the angular speed of the pinions (rad/s) and F the forces of the flanks.
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache

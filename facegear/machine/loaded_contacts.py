@@ -2,6 +2,16 @@
 
 The load decides: a contact with at most OPEN_SHARE of the largest flank force is open, one with at least
 CLOSED_SHARE is closed. In between, rounding and the last digits of a torque would decide: `undecided`.
+
+Stiffness of the flanks that carry load, about the place where the torques hold the machine. Behind the teeth
+of a mesh lies a body, of which only some modes are kept. What they leave out is a static compliance R (2, 2)
+between the two flanks of the mesh, the residual of MacNeal 1971 without mass. With the slopes D of the teeth
+of both flanks and the deflections d,
+
+    F = S d,   S = (D^-1 + R)^-1 = (1 + D R)^-1 D
+
+A flank that presses alone has its entry of the diagonal of R in series with its teeth. Where both flanks of a
+mesh press, S couples them: teeth on both of its flanks bend one rim.
 """
 
 from dataclasses import dataclass, replace
@@ -10,8 +20,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps, flank_law
+from facegear.machine.flanks import flank_edges, flank_law
 from facegear.machine.machine import Machine
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import bearing_forces, mean_equilibrium
@@ -130,11 +139,7 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     ringed = machine.linear.rings.body
     rings[ringed] = np.hypot(*bearing_forces(static_machine, equilibrium)[0, ringed, :2].T)
     positions[ringed] = equilibrium.displacements[0, machine.linear.ring_coordinates]
-    over = (
-        static_machine.linear.rows @ equilibrium.displacements[0]
-        - constant_errors(machine)
-        - flank_gaps(machine)
-    )
+    over = static_machine.linear.rows @ equilibrium.displacements[0] - flank_edges(machine)
     if machine.own_softening is not None:
         over += np.tile(machine.own_softening, 2) * equilibrium.flank_forces[0]
     law, compression = flank_law(machine).mean(), np.maximum(over, 0.0)
@@ -167,7 +172,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     bearing = linear.stiffness * np.outer(scale, scale)
     loads = linear.loads * scale
     stiffness = np.tile(machine.mean_stiffness, 2)
-    gaps = constant_errors(machine) + flank_gaps(machine)
+    gaps = flank_edges(machine)
     contact_mask = np.arange(gaps.size) < len(machine.layout.meshes)
     for _ in range(MAX_SETS):
         active_stiffness = np.where(contact_mask, stiffness, 0.0)

@@ -1,4 +1,9 @@
-"""Natural frequencies, shapes and names of modes with the mean mesh stiffness, equations (23), (24)."""
+"""Natural frequencies, shapes and names of modes with the mean mesh stiffness, equations (23), (24).
+
+Name each mode by what moves in it: the paper's symbols and three classes, read from the mode shapes. Both are
+taken over all modes of one frequency together, so they do not depend on the arbitrary basis that an
+eigenvalue solver returns for a repeated frequency.
+"""
 
 import itertools
 from collections.abc import Sequence

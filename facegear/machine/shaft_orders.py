@@ -269,7 +269,7 @@ def loaded_machine(machine: Machine) -> LoadedMachine:
         If no equilibrium is found.
     """
     linear, springs = pressed_springs(machine)
-    return LoadedMachine(linear, springs, flank_dampers(machine, np.diagonal(springs) > 0.0))
+    return LoadedMachine(linear, springs, flank_dampers(machine.damping, np.diagonal(springs) > 0.0))
 
 
 def mesh_amplitudes(forces: ComplexArray, contact_mask: Mask) -> Array:

@@ -1,4 +1,13 @@
-"""Static equilibrium under torque, with every force and moment in balance."""
+"""Static equilibrium under torque, with every force and moment in balance.
+
+Whether a static result is one: every force and moment on every body in balance, counted anew. The solvers
+keep an account of their own unknowns. This one goes back to the whole matrices, all degrees of freedom
+included, so that nothing that a solver leaves out can hide.
+
+Static equilibrium: who carries load when the machine stands still under torque. Every flank is a one-sided
+contact, every bearing a spring, with clearance or without: one convex problem at each position, solved to the
+accuracy of its numbers. Each result is held against the balance of all forces and moments on every body.
+"""
 
 from dataclasses import dataclass
 
@@ -7,10 +16,11 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.harmonics import stack_series, stacked_values
-from facegear.machine.block_statics import has_blocks, has_kernel, settle_all, static_springs, static_unknowns
+from facegear.machine.block_statics import StaticBlocks, has_kernel, settle_all, static_blocks
 from facegear.machine.dense_statics import RESIDUAL, Contacts, dense_equilibrium
 from facegear.machine.flank_errors import constant_errors, error_series, slow_errors
-from facegear.machine.flanks import flank_gaps, flank_law, line_law
+from facegear.machine.flanks import flank_law, line_law
+from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
 from facegear.meshing.law import LawAtPhases, MeshLaw
 
@@ -61,13 +71,15 @@ class Balance:
         raise NotConverged("static equilibrium", names[worst], problem)
 
 
-def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Array, gaps: Array) -> Balance:
+def balance(
+    linear: LinearModel, displacements: Array, forces: Array, stiffness: Array, gaps: Array
+) -> Balance:
     """Compute the balance of bearings, contacts and torques on every body.
 
     Parameters
     ----------
-    machine : Machine
-        The machine.
+    linear : LinearModel
+        Bearings, loads and directions of the contacts of the machine.
     displacements : (K, dof) array
         m and rad.
     forces : (K, F) array
@@ -86,9 +98,8 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
     ----------
     contacts are both flanks of every mesh, or every mesh as one with a force of either sign.
     """
-    linear = machine.linear
     rows, arms, loads = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
-    left_over = bearing_loads(machine, displacements) + forces @ rows - loads
+    left_over = bearing_loads(linear, displacements) + forces @ rows - loads
     size = np.maximum(np.abs(loads / arms).max(), np.abs(forces).max(axis=1))
     size = np.where(size > 0.0, size, 1.0)
     motion_sizes = np.abs(displacements)
@@ -100,13 +111,13 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
     )
 
 
-def bearing_loads(machine: Machine, displacements: Array) -> Array:
+def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
     """Return the force or moment of every degree of freedom on its bearing, beyond any clearance.
 
     Parameters
     ----------
-    machine : Machine
-        The machine.
+    linear : LinearModel
+        Bearings of the machine.
     displacements : (K, dof) array
         m and rad.
 
@@ -115,8 +126,7 @@ def bearing_loads(machine: Machine, displacements: Array) -> Array:
     (K, dof) array
         N and N m.
     """
-    linear = machine.linear
-    loads = displacements @ machine.without_errors.linear.stiffness_without_rings
+    loads = displacements @ linear.stiffness_without_rings
     rings, at = linear.rings, linear.ring_coordinates
     ring_displacements = displacements[:, at]
     distance = np.maximum(np.hypot(ring_displacements[..., 0], ring_displacements[..., 1]), rings.clearance)
@@ -208,7 +218,7 @@ def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
     contacts = Contacts(law, error, -half, half)
     displacements, deflections, forces = dense_equilibrium(machine.linear, contacts, lengths)
     gaps = machine.half_backlash + np.abs(deflections)
-    force_balance = balance(machine, displacements[None], forces[None], law.steepest[None], gaps[None])
+    force_balance = balance(machine.linear, displacements[None], forces[None], law.steepest[None], gaps[None])
     force_balance.require(RESIDUAL, ["mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"])
     return Equilibrium(displacements, deflections, forces, float(force_balance.residual[0]))
 
@@ -290,32 +300,30 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     NotConverged
         If forces and moments stay out of balance at a position.
     """
-    law_at_positions, gaps = law.statics_law(cycles), errors + flank_gaps(machine)
-    if has_blocks(machine.static_machine) and has_kernel(law_at_positions):
-        displacements, forces = _by_blocks(machine.static_machine, law_at_positions, gaps)
+    law_at_positions, gaps = law.statics_law(cycles), errors + np.tile(machine.half_backlash, 2)
+    blocks = static_blocks(machine.static_machine)
+    if blocks is not None and has_kernel(law_at_positions):
+        displacements, forces = _by_blocks(blocks, law_at_positions, gaps)
         if machine.drive_line is not None and machine.static_machine is not machine:
             displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
     else:
-        displacements, forces = _one_by_one(machine, law, cycles, gaps)
-    force_balance = balance(machine, displacements, forces, law_at_positions.stiffness, gaps)
+        displacements, forces = _one_by_one(machine.linear, law, cycles, gaps)
+    force_balance = balance(machine.linear, displacements, forces, law_at_positions.stiffness, gaps)
     force_balance.require(RESIDUAL_LIMIT, names)
     drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
     return Equilibria(displacements, 0.5 * (drive - back), forces, force_balance.residual)
 
 
-def _by_blocks(machine: Machine, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
+def _by_blocks(blocks: StaticBlocks, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
     """Return displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
-    coordinates, scale = static_unknowns(machine)
-    springs, start = static_springs(machine), np.zeros(coordinates.size)
-    solution, forces, _ = settle_all(springs, law, gaps, TOLERANCE, start)
-    displacements = np.zeros((len(gaps), machine.linear.size))
-    np.add.at(displacements.T, coordinates, (solution * scale).T)
-    return displacements, forces
+    start = np.zeros(blocks.coordinates.size)
+    solution, forces, _ = settle_all(blocks.springs, law, gaps, TOLERANCE, start)
+    return blocks.displacements(solution), forces
 
 
-def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
+def _one_by_one(linear: LinearModel, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
     """Return displacements (K, dof) and flank forces (K, flanks) by dense algebra."""
-    linear, never = machine.linear, np.full(gaps.shape[1], -np.inf)
+    never = np.full(gaps.shape[1], -np.inf)
     solutions = [
         dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
         for at, gap in zip(cycles, gaps, strict=True)
@@ -347,7 +355,7 @@ def static_bearing_forces(machine: Machine) -> Array:
     """
     if machine.layout.kinematics.flanks_apart:
         return bearing_forces(machine, mean_equilibrium(machine))[0]
-    forces = bearing_loads(machine, static_equilibrium(machine).displacements[None])
+    forces = bearing_loads(machine.linear, static_equilibrium(machine).displacements[None])
     return forces[0, machine.linear.translations]
 
 
@@ -366,4 +374,4 @@ def bearing_forces(machine: Machine, at_rest: Equilibria) -> Array:
     (K, bodies, 3) array
         Along x, y, z, N.
     """
-    return bearing_loads(machine, at_rest.displacements)[:, machine.linear.translations]
+    return bearing_loads(machine.linear, at_rest.displacements)[:, machine.linear.translations]

@@ -4,6 +4,10 @@
 
 with W the speed of the pinions. Damping that turns with a body (N) may feed energy from its rotation into a
 motion that lags behind it: a mode whose l has a positive real part grows.
+
+Damped modes of a machine whose face gears bend, over speed: a coupled Campbell diagram. Modes at neighbouring
+speeds are the same line where their shapes are alike by the modal assurance criterion (MAC), the square of
+`a^H M b` by the product of `a^H M a` and `b^H M b`, with the mass matrix M as weight.
 """
 
 from collections.abc import Sequence
@@ -105,7 +109,7 @@ def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[Tur
         If no equilibrium is found.
     """
     linear, springs = pressed_springs(machine)
-    dampers = flank_dampers(machine, np.diagonal(springs) > 0.0)
+    dampers = flank_dampers(machine.damping, np.diagonal(springs) > 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 

@@ -1,4 +1,9 @@
-"""Requests to run a motion: many of them are integrated side by side where they share a structure."""
+"""Requests to run a motion: many of them are integrated side by side where they share a structure.
+
+Run plans: computations made of runs, each of which depends on what the last one has shown. A run plan
+requests a run by yielding it and receives its result. The same code watches one machine alone and many whose
+runs are integrated side by side.
+"""
 
 from collections import defaultdict
 from collections.abc import Generator, Mapping, Sequence

@@ -1,4 +1,8 @@
-"""Linear functions of a motion, and forces of meshes and bearings, at evenly spaced instants."""
+"""Linear functions of a motion, and forces of meshes and bearings, at evenly spaced instants.
+
+A periodic motion is the Fourier series through its samples, so that the instants may lie closer than the
+samples. Any other motion has its samples alone.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,8 @@
-"""Shafts on bearings (Timoshenko beams), condensed statically to the middle of their pinion."""
+"""Shafts on bearings (Timoshenko beams), condensed statically to the middle of their pinion.
+
+Round shafts that bend, shear and stretch (Timoshenko). Motions of a point are x, y, z, tilt_x, tilt_y, with z
+along the shaft: right-handed rotations, so that without shear dx/dz = tilt_y and dy/dz = -tilt_x.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

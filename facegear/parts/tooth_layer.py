@@ -1,4 +1,15 @@
-"""The layer that stands for the teeth of a face gear that bends, fitted to one sector of its ring."""
+"""The layer that stands for the teeth of a face gear that bends, fitted to one sector of its ring.
+
+Stiffness round the axis and in shear of the layer that stands for the teeth, from their own energies. Two
+waves of one order bend and twist a rim. The layer of Fourier elements on a rim of the same thickness gets the
+two numbers with which it stores as much energy in both as the real teeth do. What fills the layer is its
+volume of teeth.
+
+Elastic energy of real teeth on a rim round which waves travel: one tooth with its rim by finite elements. In
+a wave of n nodal diameters every tooth moves as its neighbour does, turned by a pitch and later by the phase
+n times the pitch, so that one sector is the whole ring. On the back of the rim the motion along the axis is
+given, all other motions are free.
+"""
 
 from dataclasses import replace
 from math import pi

@@ -5,7 +5,7 @@ from typing import Any, get_args, get_type_hints
 
 from facegear.build.notes import turns
 from facegear.build.tooth_pair import contact_setup
-from facegear.pipeline.asked import (
+from facegear.pipeline.conditions import (
     BODIES,
     CONTACT,
     DUTY_POINTS,

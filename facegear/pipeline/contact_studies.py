@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from facegear.pipeline import asked, machine_conditions
+from facegear.pipeline import conditions, machine_conditions
 from facegear.pipeline.stage import Case, Wildcards
 from facegear.pipeline.studies import NOMINAL, Points, _id, names, points
 
@@ -24,7 +24,7 @@ def contact_points(case: Case) -> Points:
     Points
         Study, point and label of each, NOMINAL first.
     """
-    return _with_own(case, "contact", asked.contact)
+    return _with_own(case, "contact", conditions.contact)
 
 
 def friction_points(case: Case) -> Points:
@@ -164,7 +164,7 @@ def law_figures(case: Case) -> list[str]:
     list[str]
         `law_loads`, and `law_sweeps` where there are laws to compare.
     """
-    has_comparison = asked.load_dependent(case) and len(law_points(case)) > 1
+    has_comparison = conditions.load_dependent(case) and len(law_points(case)) > 1
     return ["law_loads", *(["law_sweeps"] if has_comparison else [])]
 
 

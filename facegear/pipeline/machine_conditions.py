@@ -5,7 +5,7 @@ from typing import Any
 from facegear.build.elastic_bodies import any_elastic
 from facegear.build.machine_layout import has_groups, split_kinds
 from facegear.build.notes import turns
-from facegear.pipeline.asked import friction, machine, root_stress, single_teeth, strength
+from facegear.pipeline.conditions import friction, machine, root_stress, single_teeth, strength
 from facegear.pipeline.stage import Case
 
 

@@ -2,7 +2,7 @@
 
 from facegear.build.cases import find_numeric_axis, study_points
 from facegear.build.machine_layout import split_kinds
-from facegear.pipeline import asked, machine_conditions
+from facegear.pipeline import conditions, machine_conditions
 from facegear.pipeline.stage import Case, Wildcards
 from facegear.report.table import unit_of
 from facegear.schema.studies import Study
@@ -118,7 +118,7 @@ def over_numbers(case: Case) -> bool:
     bool
         True if so.
     """
-    return asked.machine(case) and bool(numbered_points(case))
+    return conditions.machine(case) and bool(numbered_points(case))
 
 
 def force_figures(case: Case) -> list[str]:
@@ -182,7 +182,7 @@ def kinds_of_groups(case: Case) -> list[str]:
     list[str]
         The kinds.
     """
-    return split_kinds(case.values) if asked.machine(case) else []
+    return split_kinds(case.values) if conditions.machine(case) else []
 
 
 def titles(case: Case) -> list[str]:

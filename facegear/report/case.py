@@ -85,13 +85,35 @@ def case_report(
     notes: Sequence[str] = (),
     pressure: Arrays | None = None,
 ) -> str:
-    """The HTML page of a case.
+    """Return the page of a case; chapters without a picture or table are left out.
 
-    values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
-    pair: the record of the tooth geometry, view: the pair in mesh, bodies: modes of face gears that bend, if
-    they were computed; base: the config file that the case's own extends; notes: what a run says of its
-    config when it starts; pressure: arrays of the contact analysis.
-    Chapters without a picture or table are left out.
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the case's config.
+    tables : mapping of str to DataFrame
+        Tables by the name of their file without its ending.
+    pictures : mapping of str to Path
+        Stored figures (svg) by name.
+    manifests : sequence of mappings
+        Manifests of all rules.
+    pair : mapping or None
+        Record of the tooth geometry, if it was computed.
+    view : View or None
+        The pair in mesh, if it was computed.
+    bodies : View or None
+        Modes of face gears that bend, if they were computed.
+    base : Base or None
+        Config file that the case's own extends.
+    notes : sequence of str
+        Remarks on the config that a run prints when it starts.
+    pressure : mapping of (...) arrays or None
+        Arrays `pressure` of stage contact, SI units.
+
+    Returns
+    -------
+    str
+        The page, as HTML.
     """
     tables = {name: table.reset_index(drop=True) for name, table in tables.items()}  # parts keep their rows
     listed_names = {name for _, _, names in CHAPTERS for name in names}

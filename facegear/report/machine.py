@@ -165,7 +165,7 @@ def machine_chapter(
         Tables of the report by name; may hold ratings, bodies, meshes.
     pair : mapping or None
         Record of the tooth geometry, where it was computed.
-    drawn : sequence of Picture
+    pictures : sequence of Picture
         Drawings of the machine.
     base : Base or None
         The config file that the case's own extends.
@@ -192,7 +192,20 @@ def machine_chapter(
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
-    """Columns quantity, value, unit, as text; only what is known."""
+    """Return the key numbers of a machine as text, as far as they were computed.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+
+    Returns
+    -------
+    DataFrame
+        Columns quantity, value and unit.
+    """
     numbers_by_name = _less_friction(_signed_numbers(tables) | machine_numbers(tables)) | (
         {} if pair is None else _teeth(pair)
     )
@@ -206,7 +219,7 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
 
 
 def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """The numbers with the power out with and without the friction loss, where both are known."""
+    """Return the numbers with the power out without and with the friction loss, kW, where both are known."""
     if not {"loss_percent", "power_in_kw", "power_out_kw"} <= numbers.keys():
         return dict(numbers)
     without = numbers["power_out_kw"]
@@ -272,7 +285,7 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _materials(values: Mapping[str, Any]) -> str:
-    """The material cards by which the pair is rated, if it is."""
+    """State the material cards by which the pair is rated; empty without section `strength`."""
     if (strength := values["strength"]) is None:
         return ""
     pinion, gear = (strength[body]["card"]["name"] for body in ("pinion", "face_gear"))
@@ -350,7 +363,9 @@ def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
-    """Dotted keys and values; a list of sections has numbered keys, any other list is one value."""
+    """Return dotted keys and values below a key; a list of sections has numbered keys, any other list is one
+    value.
+    """
     if isinstance(value, Mapping):
         return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]
     if isinstance(value, list | tuple):

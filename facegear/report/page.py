@@ -30,9 +30,19 @@ NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
 
 
 def data_uri(still: str) -> str:
-    """The text of a svg as a data URI that holds no single quote, for an attribute between such quotes.
+    """Return a svg as a data URI without single quotes, for an attribute between such quotes.
 
     A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
+
+    Parameters
+    ----------
+    still : str
+        Text of the svg.
+
+    Returns
+    -------
+    str
+        The URI.
     """
     drawing = shortened(still).replace("%", quote("%"))
     for letter in set(drawing) - UNESCAPED_CHARACTERS - {"%"}:
@@ -41,7 +51,18 @@ def data_uri(still: str) -> str:
 
 
 def shortened(svg: str) -> str:
-    """Return the drawing without its metadata, with rounded coordinates and without needless gaps."""
+    """Return a drawing without its metadata, with rounded coordinates and without needless white space.
+
+    Parameters
+    ----------
+    svg : str
+        Text of the svg.
+
+    Returns
+    -------
+    str
+        The shorter text.
+    """
     drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
     drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
     return GAPS.sub(" ", re.sub(r">\s+<", "><", drawing)).strip()
@@ -114,7 +135,7 @@ class View:
     caption: str
     kind: Literal["pair", "body"] = "pair"
 
-    def packed(self) -> str:
+    def compressed_data(self) -> str:
         """Return the data as the page carries them.
 
         Returns
@@ -188,7 +209,7 @@ def _json(content: Any) -> bytes:
 
 
 def _pack(content: bytes) -> str:
-    """Compressed, as text; the same content gives the same text."""
+    """Compress bytes and encode them as base64 text; equal content gives equal text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 

@@ -51,7 +51,7 @@ def config_error(error: InvalidInput) -> ConfigError:
     ConfigError
         The same refusal with keys of the config.
     """
-    requirement = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.allowed)
+    requirement = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.requirement)
     return ConfigError(KEYS.get(error.quantity, error.quantity), error.value, requirement)
 
 
@@ -135,9 +135,9 @@ def require_all(*checks: Callable[[], None]) -> None:
             check()
         except InvalidInput as error:
             key_error = config_error(error)
-            refusals.append((key_error.key, key_error.value, key_error.allowed))
+            refusals.append((key_error.key, key_error.value, key_error.requirement))
         except ConfigError as error:
-            refusals.append((error.key, error.value, error.allowed))
+            refusals.append((error.key, error.value, error.requirement))
         except PydanticCustomError as error:
             refusals += (error.context or {})["refused"]
     if refusals:

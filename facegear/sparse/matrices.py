@@ -1,4 +1,8 @@
-"""Symmetric matrices as sums over cells, dense ones, and factors of sparse ones."""
+"""Symmetric matrices as sums over cells, dense ones, and factors of sparse ones.
+
+Dense symmetric positive definite matrices. Where `overwrite` is set, the result may take the place of the
+argument.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,9 @@
-"""Root stress and pressure of each contact of a machine, and of the flanks that a rated flank meets."""
+"""Root stress and pressure of each contact of a machine, and of the flanks that a rated flank meets.
+
+Root stress and pressure of the flanks that a rated flank works with: the worst where there are several. A
+pinion's flank meets both face gears. Teeth that are loaded equally both ways meet with both flanks. Each of
+these contacts has errors of its own.
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,14 @@
-"""Root stress of a tooth on its way through the mesh, its largest value, and its error along the face."""
+"""Root stress of a tooth on its way through the mesh, its largest value, and its error along the face.
+
+Error of root stress from the distance of planes along the face, by a mesh with twice that distance. A section
+of the tooth shows what the mesh misses across the profile (`facegear.contact.root_gauges`). It does not
+show how contact is spread over the planes along the face, nor how they follow the stress to a sharp end.
+
+Stress is linear in the forces. The largest that a unit force on a node makes anywhere down the fillet, in one
+plane across the face, bounds what all forces together can make there; stress is only superposed where this
+bound exceeds the largest that is known. Forces, all compressed by rows, stand tooth by tooth and position by
+position.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

@@ -45,7 +45,7 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
 
 def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
-    from facegear.teeth.unloaded import unloaded_motion
+    from facegear.teeth.unloaded_contact import unloaded_motion
 
     positions = (np.arange(POSITIONS) + 0.5) / POSITIONS
     phi1 = pinion_angle(design, positions)

@@ -1,4 +1,9 @@
-"""Outline of the pinion's tooth, and the smallest gap between the whole teeth over a pitch."""
+"""Outline of the pinion's tooth, and the smallest gap between the whole teeth over a pitch.
+
+Smallest gap between the whole teeth over a pitch, fillets, tips and lands included: finds interference.
+Points of the gear's tooth (tip edge, flank, fillet, root land) are brought into the pinion's section, and the
+signed distance to the tooth outline is taken; negative means that the gear stands inside the pinion.
+"""
 
 from dataclasses import dataclass
 from math import copysign, inf, pi

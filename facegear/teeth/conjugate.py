@@ -7,6 +7,11 @@ gear's axis and h = m (N_s - N_1) / 2, psi solves the condition that the normal 
 cylinder; the transmission error is stationary there. For parallel planes of the axes (no error of the shaft
 angle) it reads cos psi (h - dq) - sin psi dE = h cos a0. Derived for this project from the generated flank of
 `face_gear`; confirmed against rigid displacements of either body.
+
+Derivatives of transmission error and path of the exact unloaded contact by the pose of a pair. The
+transmission error is stationary in the slope psi of the common normal, so that its derivatives are those at
+constant psi: by offset and axial shift they are the normal itself. The path follows psi, whose derivatives
+come from the condition that this module solves.
 """
 
 from dataclasses import astuple, dataclass

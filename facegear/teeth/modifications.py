@@ -1,4 +1,11 @@
-"""Modifications and measured deviations of flanks."""
+"""Modifications and measured deviations of flanks.
+
+Modifications and deviations of the face gear's flanks: material taken off along the normal, and the gap that
+this opens. Everything is for the flank that meets the pinion's right one: the left flank of tooth 0 in a
+mirror, where it stands as the right one does in the gear body frame (see `design`). A place on the flank is
+its gear radius and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the
+fillet, the amount at the edge stands.
+"""
 
 from functools import lru_cache
 

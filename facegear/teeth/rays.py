@@ -1,4 +1,8 @@
-"""The face gear's numbers and a sample of its flank, as the kernel of rays takes them."""
+"""The face gear's numbers and a sample of its flank, as the kernel of rays takes them.
+
+Rays cut with a tooth of the face gear: the first of its surfaces that is hit. All angles in rad, all lengths
+in m, for the right side of tooth 0 in the gear's body frame.
+"""
 
 from functools import lru_cache
 from math import pi

@@ -1,4 +1,10 @@
-"""Topology and nodes of a tooth section: quads that coarsen three to one away from the flank."""
+"""Topology and nodes of a tooth section: quads that coarsen three to one away from the flank.
+
+The half section is a strip along its outer boundary (tip corner, flank, fillet, root land) and a block below.
+Coordinates: sigma runs along the boundary in units of coarse columns, t goes inwards, 0 at the surface and 1
+on the centre line and on the floor of the strip; from 1 to 2 it crosses the block below, whose columns go on
+from those of the floor.
+"""
 
 from dataclasses import dataclass
 from itertools import pairwise

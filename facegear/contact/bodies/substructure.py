@@ -1,5 +1,10 @@
 """Static condensation (Guyan 1965) of one tooth onto its loaded nodes and the faces shared with its
 neighbours.
+
+Split of a body that is its own mirror image into two bodies of half the size. Displacements that are even
+across the middle plane do not mix with those that are odd. Either kind is known from the half before the
+plane, where it is held along the plane's normal or across it. An element that the plane crosses counts half
+and is not cut, so that both halves together are the whole to rounding.
 """
 
 from dataclasses import dataclass, field, replace

@@ -6,6 +6,11 @@ hexahedra (`ElementQuad2`). The pressure is a sum of bilinear basis functions (h
 (`ElementQuad1` between nodes), so that the nodal loads, the mean gap and the mean displacement of a basis
 function follow from one matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along
 the width; node (i, j) has the number i nv + j.
+
+Strain gauges on a free surface: stress from the displacements of the surface alone. Where nothing touches,
+the surface is in plane stress, and its stress follows from the displacement's derivatives along it. They are
+taken at the 2 x 2 Gauss points of each facet, where derivatives of quadratic elements converge one order
+faster than elsewhere.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,13 @@
 """Special points of a branch: their kinds and the evidence for each.
 
 Folds and doublings: Seydel 2010; grazing: di Bernardo et al. 2008.
+
+Find where the stability of a branch may change and change back between two neighbouring points. Two
+multipliers that meet on the unit circle may leave it and come back within one step. The more they turn in the
+step, the narrower is such a band. The matrix of the map itself changes smoothly along a branch, also where
+multipliers meet. It is interpolated by cubics through the matrices and their slopes at both ends, on
+stretches over which no multiplier near the circle turns far. Where the multipliers of the interpolated
+matrices suggest a change, the branch itself is then examined.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,8 @@
-"""From one branch onto another: mirror images, doubled periods, broken symmetry, found motions."""
+"""From one branch onto another: mirror images, doubled periods, broken symmetry, found motions.
+
+The new branch is sought beside the special point, along the null vector of M + I or M - I (Doedel et al.
+1991), with M the matrix of the period map.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace

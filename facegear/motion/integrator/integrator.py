@@ -10,8 +10,8 @@ from facegear._kernels import motion
 from facegear.arrays import Array
 from facegear.motion.integrator.kernel_system import (
     TAU,
-    edges_of,
     fastest,
+    lower_edges,
     make_runner,
     pack,
     packed_system,
@@ -112,7 +112,7 @@ class Integrator:
     @property
     def edges(self) -> tuple[Array, Array]:
         """Lower and upper edge of each row, (m,), m; of a mesh that never opens lower >= upper."""
-        return edges_of(self.system)
+        return lower_edges(self.system), self.system.upper
 
     @property
     def fastest(self) -> float:

@@ -1,6 +1,6 @@
 """Convert a system for the kernels (facegear/_kernels/src/motion/system.hpp), also at one mesh frequency."""
 
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from facegear.motion.integrator.system import System
 TAU = 2.0 * np.pi
 MIN_CLEARANCE = 1e-12
 """Clearance, over the length scale, up to which it is rounding."""
+_contiguous = partial(np.ascontiguousarray, dtype=float)
 
 
 def pack(system: System, frequency: float, tolerance: float) -> motion.Machine:
@@ -93,8 +94,8 @@ def system_numbers(system: System) -> dict[str, Any]:
         "damping": _contiguous(system.damping),
         "weights": weights_of(system),
         "mesh_damping": _contiguous(system.mesh_damping),
-        "lower": edges_of(system)[0],
-        "upper": edges_of(system)[1],
+        "lower": lower_edges(system),
+        "upper": _contiguous(system.upper),
         "leverage": (system.mesh_jacobian**2).sum(axis=1),
         "error": _contiguous(system.error),
         "error_kind": np.ascontiguousarray(system.error_kind, np.int64),
@@ -115,8 +116,8 @@ def system_numbers(system: System) -> dict[str, Any]:
 
 
 @lru_cache(maxsize=16)
-def edges_of(system: System) -> tuple[Array, Array]:
-    """Return the deflections at which each row of a system comes into contact.
+def lower_edges(system: System) -> Array:
+    """Return the deflection below which each row of a system comes into contact on its lower side.
 
     A clearance within rounding of the deflections is set to zero: its edges could not be distinguished.
 
@@ -127,11 +128,11 @@ def edges_of(system: System) -> tuple[Array, Array]:
 
     Returns
     -------
-    tuple of Array
-        Lower and upper edges (m,), m. The arrays are cached and must not be changed.
+    (m,) array
+        m; the upper edge where a row has no clearance. The array is cached and must not be changed.
     """
     without_clearance = system.upper - system.lower <= MIN_CLEARANCE * system.scale
-    return np.where(without_clearance, system.upper, system.lower), _contiguous(system.upper)
+    return np.where(without_clearance, system.upper, system.lower)
 
 
 @lru_cache(maxsize=16)
@@ -179,10 +180,6 @@ def _gauss(count: int) -> tuple[Array, Array]:
     """Nodes and weights (count,) of Gauss's rule on [0, 1]."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 + 0.5 * nodes, 0.5 * weights
-
-
-def _contiguous(values: Array) -> Array:
-    return np.ascontiguousarray(values, dtype=float)
 
 
 def _coupling(coupling: Coupling | None, n: int) -> Array:

@@ -1,4 +1,12 @@
-"""Exact reduction to the motions that meshes excite or feel, and coupling beside the meshes."""
+"""Exact reduction to the motions that meshes excite or feel, and coupling beside the meshes.
+
+Reduce the coordinates: leave out exactly the motions that no mesh can excite or feel. Degrees of freedom with
+the same bearing frequency (and so, with C = lambda M + beta K, the same damping) may be combined freely. Of
+each such group, only the combinations that appear in a mesh deflection move together with the others. The
+rest (pinion axial motions, the rigid rotation, one translation of each pinion) are decoupled. Further dampers
+and turning bodies couple coordinates, too. Coordinates that they couple to a motion in the basis are in the
+basis as well.
+"""
 
 from dataclasses import dataclass, replace
 

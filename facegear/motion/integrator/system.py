@@ -9,11 +9,11 @@ forces (friction.hpp). One degree of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.by_content import kept_by_content
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import MeshFriction, flank_ratios, friction_rows
 from facegear.machine.flanks import mesh_contacts
@@ -134,7 +134,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
     """
     contacts, rings = mesh_contacts(machine), machine.linear.rings
     zeros = 3 * rings.body.size * [0.0]
-    error, error_kind = _kinds(machine.without_errors)
+    error, error_kind = _kinds((*contacts.error, *len(zeros) * [NO_ERROR]))
     load = np.zeros((reduction.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduction.load
     return System(
@@ -160,12 +160,12 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
     )
 
 
-@lru_cache(maxsize=8)
-def _kinds(machine: Machine) -> tuple[Array, Integers]:
+@kept_by_content(8)
+def _kinds(series: tuple[Harmonics, ...]) -> tuple[Array, Integers]:
     """Different series of e(t) among contacts and rings, and the kind of each; shared, must not be
     changed.
     """
-    return different((*mesh_contacts(machine).error, *3 * machine.linear.rings.body.size * [NO_ERROR]))
+    return different(series)
 
 
 def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> FlankRubbing:

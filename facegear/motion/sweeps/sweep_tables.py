@@ -386,7 +386,7 @@ def response_summary(response: SteadyState) -> str:
     """
     parts = [f"largest mesh force {np.abs(response.forces).max():.4g} N", response.label]
     if response.looks is not None:
-        parts.append(" from one start and ".join(map(_period_label, response.looks)) + " from another")
+        parts.append(" from one start and ".join(map(str, response.looks)) + " from another")
     parts.append(f"open for up to {100.0 * response.fractions[0].max():.0f} % of the time")
     past = float(response.past_law.max())
     if past > 0.0:
@@ -395,10 +395,6 @@ def response_summary(response: SteadyState) -> str:
     if pull > PULLS * np.abs(response.forces).max():
         parts.append(f"mesh dampers pull by up to {pull:.0f} N before flanks part")
     return ", ".join(parts)
-
-
-def _period_label(period: int) -> str:
-    return f"period-{period}" if period else "irregular"
 
 
 def sweep_summary(directions: Mapping[str, Direction]) -> str:

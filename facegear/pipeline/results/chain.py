@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.outcome import Outcome
-from facegear.pipeline.reported import REPORT_TABLES, asked_for, table_name
+from facegear.pipeline.report_tables import REPORT_TABLES, asked_for, table_name
 from facegear.pipeline.results.base import Result, StageOutput
 from facegear.pipeline.results.store import Store
 from facegear.pipeline.run import call

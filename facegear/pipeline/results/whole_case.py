@@ -14,7 +14,7 @@ from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.machine_conditions import machine_loads
 from facegear.pipeline.needs import resolved_needs
 from facegear.pipeline.provenance.manifest import versions
-from facegear.pipeline.reported import (
+from facegear.pipeline.report_tables import (
     REPORT_TABLES,
     asked_for,
     outlook_in_words,

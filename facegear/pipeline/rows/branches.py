@@ -1,7 +1,7 @@
 """Branches of periodic motions."""
 
 from facegear.pipeline import arguments, machine_conditions
-from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, SPEED, SWEEP
+from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}

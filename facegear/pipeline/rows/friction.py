@@ -1,7 +1,7 @@
 """Friction, heat and film."""
 
-from facegear.pipeline import asked, contact_studies, machine_conditions
-from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, PAIR, SPEED
+from facegear.pipeline import conditions, contact_studies, machine_conditions
+from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, PAIR, SPEED
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 STORED_CONTACT = from_stage("contact", "ltca", "pressure")
@@ -36,7 +36,7 @@ PAIR_ROWS = (
                 "map_table": From("lubrication", "map"),
             },
         ),
-        condition=asked.friction,
+        condition=conditions.friction,
         local=True,
     ),
 )

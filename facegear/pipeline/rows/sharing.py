@@ -1,7 +1,7 @@
 """Stages of load sharing among meshes."""
 
 from facegear.pipeline import arguments, machine_conditions, studies
-from facegear.pipeline.rows.shared import (
+from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
     HARMONICS,

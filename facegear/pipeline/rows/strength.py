@@ -1,7 +1,7 @@
 """Root stress, and safety and life under a duty cycle."""
 
-from facegear.pipeline import arguments, asked, machine_conditions
-from facegear.pipeline.rows.shared import (
+from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
     FLANKS,
@@ -20,8 +20,8 @@ GEARS = {"gears": ComputedValue(arguments.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
 
 POSED_CONTACT = {
-    "posed": From("posed_stress", "contacts", when=asked.poses),
-    "posed_by_torque": From("posed_stress", "by_torque", when=asked.poses),
+    "posed_contacts": From("posed_stress", "contacts", when=conditions.poses),
+    "posed_by_torque": From("posed_stress", "by_torque", when=conditions.poses),
 }
 """Contact solved at the pose of every mesh."""
 
@@ -52,7 +52,7 @@ LOAD_ROWS = (
             chapter="strength",
             upstream=from_stage("root_stress", "passage", "along_face"),
         ),
-        condition=asked.root_stress,
+        condition=conditions.root_stress,
     ),
     Stage(
         name="posed_stress",
@@ -67,7 +67,7 @@ LOAD_ROWS = (
             ),
             "contacts": File("strength/posed_contacts.npz"),
         },
-        condition=asked.posed_stress,
+        condition=conditions.posed_stress,
         memory_mb=4000,
         minutes=30,
     ),
@@ -84,7 +84,7 @@ LOAD_ROWS = (
                 "strength/duty_poses.csv", "facegear.pipeline.stages.duty:COLUMNS", text=("mesh", "flank")
             )
         },
-        condition=asked.posed_rating,
+        condition=conditions.posed_rating,
         local=True,
     ),
     Stage(
@@ -117,7 +117,7 @@ ROWS = (
             "mesh_losses": From("machine_loss", "meshes", when=machine_conditions.scuffed_loads),
             **POSED_CONTACT,
             **POSES,
-            "duty_poses": From("duty_poses", "duty_poses", when=asked.poses),
+            "duty_poses": From("duty_poses", "duty_poses", when=conditions.poses),
         },
         files={
             "safety": File("strength/safety.csv", "facegear.strength.columns:SAFETY_FINITE"),
@@ -131,7 +131,7 @@ ROWS = (
             chapter="strength",
             upstream=from_stage("rating", "rating", "damage", "curves"),
         ),
-        condition=asked.strength,
+        condition=conditions.strength,
     ),
     Stage(
         name="dynamic_root_stress",

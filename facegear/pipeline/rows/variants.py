@@ -1,7 +1,7 @@
 """Machines with their tolerances, and designs that are searched."""
 
-from facegear.pipeline import arguments, asked, machine_conditions
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
+from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline.rows.common_needs import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
@@ -9,7 +9,7 @@ SOLID = ComputedValue(machine_conditions.solid_pair, ("transmission", "tooth_pai
 SAMPLE_NEEDS: Needs = {
     **SHARING,
     "tolerances": CAUSES,
-    "pair": ComputedValue(arguments.pair_where(arguments.sampled_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(arguments.pair_where(arguments.sampled_contact), conditions.PAIR_SECTIONS),
     "lubrication_sections": ComputedValue(arguments.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
@@ -29,7 +29,7 @@ SEARCH_NEEDS: Needs = {
     "options": OPTIONS,
     "search": "search",
     "tolerances": "tolerances",
-    "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), conditions.PAIR_SECTIONS),
     "solid": SOLID,
 }
 SEARCHED_FROM = {

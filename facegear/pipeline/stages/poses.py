@@ -104,7 +104,7 @@ def pose_surface(
 
 
 def quantities(
-    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed: PosedContact
+    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, Array]:
     """Return the QUANTITIES that are known of one pose.
 
@@ -114,7 +114,7 @@ def quantities(
         Design of the pair.
     flanks : tuple[GearFlank, GearFlank]
         Compliance of the pinion and of the face gear.
-    posed : PosedContact
+    posed_contact : PosedContact
         Contact at the pose.
 
     Returns
@@ -128,15 +128,15 @@ def quantities(
         Where teeth interfere.
     """
     values = {
-        STIFFNESS: _stiffness(design, posed),
-        "ste_peak_to_peak_m": 1e-6 * posed.by_torque["ste_peak_to_peak_um"].to_numpy(),
-        "pressure_pa": 1e6 * posed.by_torque["pressure_mpa"].to_numpy(),
-        RADIUS: 1e-3 * posed.by_torque["path_radius_mm"].to_numpy(),
+        STIFFNESS: _stiffness(design, posed_contact),
+        "ste_peak_to_peak_m": 1e-6 * posed_contact.by_torque["ste_peak_to_peak_um"].to_numpy(),
+        "pressure_pa": 1e6 * posed_contact.by_torque["pressure_mpa"].to_numpy(),
+        RADIUS: 1e-3 * posed_contact.by_torque["path_radius_mm"].to_numpy(),
     }
-    torques = posed.by_torque["torque_n_m"].to_numpy()
+    torques = posed_contact.by_torque["torque_n_m"].to_numpy()
     for body, flank in zip(BODIES, flanks, strict=True):
         if flank.gauges is not None:
-            largest = largest_tension(passing(body, flank, posed.loads))
+            largest = largest_tension(passing(body, flank, posed_contact.loads))
             values[f"{body}_root_pa"] = np.array([largest(float(torque)) for torque in torques])
     return {name: values[name] for name in QUANTITIES if name in values and (values[name] > 0.0).all()}
 

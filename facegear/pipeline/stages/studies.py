@@ -44,8 +44,8 @@ def tolerances_chunk(
     """Compute samples `first` to `last` of a machine with its tolerances.
 
     A sample that cannot be built or computed is a row with its error. The columns MISSED hold, for the first
-    CHECKED_SAMPLES samples, what the mesh cycles taken miss; SIMPLIFIED what is missed by the few points of
-    the contact that friction is taken at. They are empty in other rows.
+    CHECKED_SAMPLES samples, what the mesh cycles taken miss; SIMPLIFICATION_ERRORS what is missed by the few
+    points of the contact that friction is taken at. They are empty in other rows.
 
     Parameters
     ----------

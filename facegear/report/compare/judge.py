@@ -34,19 +34,19 @@ COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerica
 class Verdict(StrEnum):
     """Verdict on a number or a label."""
 
-    SAME = "same"
+    UNCHANGED = "same"
     WITHIN_ERROR = "within its numerical error"
-    MOVED = "moved"
+    BEYOND_ERROR = "moved"
     NO_ERROR = "moved, its error is not stated"
     IRREGULAR = "irregular motion, a statistic"
     ROUNDING = "after irregular motion, decided by rounding"
     MIRROR = "mirror image of the same motion"
     LABEL = "label changed"
-    GONE = "gone"
-    ADDED = "added"
+    ONLY_IN_OLD = "gone"
+    ONLY_IN_NEW = "added"
 
 
-CHANGES = (Verdict.MOVED, Verdict.NO_ERROR, Verdict.LABEL, Verdict.GONE, Verdict.ADDED)
+CHANGES = (Verdict.BEYOND_ERROR, Verdict.NO_ERROR, Verdict.LABEL, Verdict.ONLY_IN_OLD, Verdict.ONLY_IN_NEW)
 """Verdicts that make two folders different."""
 
 
@@ -102,7 +102,7 @@ def compare(old: Path, new: Path) -> Comparison:
     ]
     rows = pd.concat(judgements, ignore_index=True)
     counts = {verdict: int((rows["verdict"] == verdict).sum()) for verdict in Verdict}
-    return Comparison(rows[rows["verdict"] != Verdict.SAME].reset_index(drop=True), counts)
+    return Comparison(rows[rows["verdict"] != Verdict.UNCHANGED].reset_index(drop=True), counts)
 
 
 def answer_tables(folder: Path) -> set[str]:
@@ -144,7 +144,7 @@ def tables_not_stored(folder: Path) -> set[str]:
 
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     if old is None or new is None:
-        return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
+        return _one_sided(name, ["whole table"], Verdict.ONLY_IN_NEW if old is None else Verdict.ONLY_IN_OLD)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
     table = declaration_of(TABLES, name) or Table()
     speeds = _bracket_names(before, after, table)
@@ -160,7 +160,10 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         _judge_column(name, table, before.loc[common_rows], after.loc[common_rows], column, group)
         for column in columns
     ]
-    for table_here, other_table, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
+    for table_here, other_table, verdict in (
+        (before, after, Verdict.ONLY_IN_OLD),
+        (after, before, Verdict.ONLY_IN_NEW),
+    ):
         lost_columns = [
             f"column {column}" for column in table_here.columns if column not in other_table.columns
         ]
@@ -261,7 +264,7 @@ def _judge_column(
                     _both_irregular(old, new, table),
                     has_image & (column not in table.motion),
                 ],
-                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
+                [Verdict.UNCHANGED, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
                 Verdict.LABEL,
             ),
         )
@@ -277,8 +280,8 @@ def _judge_column(
         within = change <= errors
     verdict = np.select(
         [change <= REPEATABLE, irregular, within, open_rows, images],
-        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
-        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
+        [Verdict.UNCHANGED, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
+        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.BEYOND_ERROR),
     )
     return rows.assign(relative_change=change, numerical_error=errors, verdict=verdict)
 

@@ -41,7 +41,22 @@ BESIDE = 0.4
 def gearbox_layout_figures(
     meshes: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers
 ) -> tuple[Figure, ...]:
-    """The machine with the forces at rest of the table `meshes` of stage ratings."""
+    """Draw the machine with its forces at rest.
+
+    Parameters
+    ----------
+    meshes : DataFrame
+        Table `meshes` of stage ratings.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth and sizes of the pair.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     drives = (meshes["flank"] != "back").astype(float)
     loads = pd.DataFrame({"mesh": meshes["mesh"], "mean_n": meshes["force_n"].abs()})
     loads = loads.assign(drive_fraction=drives, back_fraction=1.0 - drives)
@@ -49,10 +64,25 @@ def gearbox_layout_figures(
 
 
 def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame | None = None) -> Figure:
-    """One panel a face gear, upper on top; tables as the hunting cycle's.
+    """Draw a layout seen from above: a panel for each face gear, the upper one on top.
 
-    Red: mean tangential force of each pinion on the gear; green: mean force on bearings, of the pinions
-    (tangential) inside the upper gear, of the gear from its centre, where they are given.
+    Red: mean tangential force of each pinion on the gear. Green, if bearings are given: mean force on the
+    bearings, of the pinions (tangential) inside the upper gear, of the gear from its centre.
+
+    Parameters
+    ----------
+    layout : Layout
+        Places and roles of pinions and gears.
+    meshes : DataFrame
+        Mean load, N, and fractions of the time on either flank of each mesh, as in table `meshes` of stage
+        hunting.
+    bearings : DataFrame or None
+        Mean forces on bearings, N, as in table `bearings` of stage hunting.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     loads = meshes.set_index("mesh")
     forces = None if bearings is None else bearings.set_index("body")
@@ -78,6 +108,9 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
 
 
 def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float) -> Panel:
+    """Return the panel of face gear `g`: rim, pinions, forces and labels. `metres`: arrow length of one
+    newton.
+    """
     gear, radius = layout.gears[g], layout.mesh_radius
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     marks: list[Mark] = [
@@ -127,7 +160,7 @@ def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | N
 
 
 def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
-    """Text beside a pinion, outside the gear: it begins at the rim, whatever its length."""
+    """Return the text beside a pinion, outside the gear; it begins at the rim, whatever its length."""
     x, y = outwards
     look: Look = {
         "across": "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right",
@@ -138,18 +171,20 @@ def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
 
 
 def _turn_arrow(radius: float, turns: float) -> Arrow:
+    """Return a curved arrow at a radius (m) that shows in which sense (sign of `turns`) the gear turns."""
     ends = np.radians([200.0, 250.0]) if turns > 0.0 else np.radians([250.0, 200.0])
     start, stop = ((radius * np.cos(a), radius * np.sin(a)) for a in ends)
     return Arrow(start, stop, width=1.0, bend=0.25 * turns)
 
 
 def _arrow(start: np.ndarray, vector: np.ndarray, colour: str) -> list[Arrow]:
-    """An arrow; none for a force of zero."""
+    """Return the arrow of a force in a list; the list is empty for a force of zero."""
     end = start + vector
     return [Arrow(tuple(start), tuple(end), colour)] if np.hypot(*vector) > 0.0 else []
 
 
 def _kilo(newtons: float) -> str:
+    """Return a force in N as text in kN."""
     return format_number(newtons / 1e3)
 
 
@@ -178,8 +213,23 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
-    """Amplitudes of all DOF (m and rad alike) over the largest; of several modes their root sum of squares,
-    which does not depend on the vectors that stand for them.
+    """Return the amplitudes of all degrees of freedom in a mode, over the largest of them.
+
+    Several modes of one frequency give their root sum of squares, which does not depend on the choice of
+    their vectors.
+
+    Parameters
+    ----------
+    shapes : DataFrame
+        Table `shapes` of stage modal.
+    orders : tuple of int
+        Numbers of the modes.
+
+    Returns
+    -------
+    (dof,) array
+        Amplitudes relative to the largest one; translations in m and rotations in rad are compared as
+        numbers.
     """
     vectors = [shapes.loc[shapes["order"] == order, "amplitude_m_or_rad"].to_numpy() for order in orders]
     if len(vectors) == 1:
@@ -265,7 +315,26 @@ def shafts_figures(
     teeth: ToothNumbers,
     width_mm: float | None,
 ) -> list[Figure]:
-    """One figure with a pair of panels for each shaft; none without shafts. `width_mm`: of the pinions."""
+    """Draw one figure with a pair of panels for each shaft; no figure for a machine without shafts.
+
+    Parameters
+    ----------
+    bearings : DataFrame
+        Forces on the bearings of the shafts, N.
+    deflections : DataFrame
+        Deflections along the shafts, µm over mm.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth and sizes of the pair.
+    width_mm : float or None
+        Face width of the pinions, mm, where it is known.
+
+    Returns
+    -------
+    list of Figure
+        No or one figure.
+    """
     sections = {pinion.name: transmission.shaft_of(pinion) for pinion in transmission.pinions}
     shaft_sections = {name: section for name, section in sections.items() if section is not None}
     if not shaft_sections:
@@ -281,8 +350,27 @@ def shafts_figure(
     radius_mm: float,
     width_mm: float | None,
 ) -> Figure:
-    """Above: a shaft with its bearings and the forces on them; below: its deflections. Shafts alike in all
-    of that share a pair of panels.
+    """Draw a pair of panels for each shaft: above its bearings and the forces on them, below its deflections.
+
+    Equal shafts with equal forces and deflections share a pair of panels.
+
+    Parameters
+    ----------
+    sections : mapping of str to ShaftSection
+        Shaft of each pinion by the pinion's name.
+    bearings : DataFrame
+        Forces on the bearings of the shafts, N.
+    deflections : DataFrame
+        Deflections along the shafts, µm over mm.
+    radius_mm : float
+        Pitch radius of the pinions, mm.
+    width_mm : float or None
+        Face width of the pinions, mm, where it is known.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for names in _group_equal_shafts(sections, bearings, deflections):
@@ -317,7 +405,7 @@ def shafts_figure(
 def _group_equal_shafts(
     sections: Mapping[str, ShaftSection], bearings: pd.DataFrame, deflections: pd.DataFrame
 ) -> list[list[str]]:
-    """Names of pinions with equal shafts that carry and deflect alike."""
+    """Group the names of the pinions whose shafts, bearing forces and deflections are equal."""
     groups: list[tuple[ShaftSection, Array, list[str]]] = []
     for name, section in sections.items():
         forces = bearings.loc[bearings["pinion"] == name, "radial_n"].to_numpy(dtype=float)
@@ -338,7 +426,7 @@ def _side_view(
     radius_mm: float,
     width_mm: float | None,
 ) -> tuple[list[Area | Curve | Text], float]:
-    """Marks of a shaft with its pinion, bearings and forces, and how far (mm) it reaches from its axis."""
+    """Return the marks of a shaft with its pinion, bearings and forces, and its largest radius (mm)."""
     marks: list[Area | Curve | Text] = []
     begin = 0.0
     for segment in section.segments:
@@ -364,13 +452,15 @@ def _side_view(
 
 
 def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
-    """Corners of a rectangle about the axis."""
+    """Return the corners x, y (5,) of a closed rectangle about the axis, from its begin, length and half
+    height.
+    """
     end = begin + length
     return np.array([begin, end, end, begin, begin]), half * np.array([-1.0, -1.0, 1.0, 1.0, -1.0])
 
 
 def _diameter_at(section: ShaftSection, at: float) -> float:
-    """Diameter (mm) at a distance from the beginning: the larger one at a step."""
+    """Return the diameter (mm) of a shaft at a distance from its beginning (mm): the larger one at a step."""
     ends = np.cumsum([0.0, *(segment.length_mm for segment in section.segments)])
     diameters = [
         segment.diameter_mm

@@ -24,7 +24,24 @@ RMS_HEIGHT = 1.3
 
 
 def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.DataFrame:
-    """Rows of one curve, ordered by speed."""
+    """Return the rows of one curve of a sweep, ordered by speed.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    direction : str
+        `up` or `down`.
+    quantity : str
+        Name of the quantity, such as `deflection_ac_rms_um`.
+    item : str
+        Name of the body or mesh.
+
+    Returns
+    -------
+    DataFrame
+        The rows.
+    """
     rows = sweep[
         (sweep["direction"] == direction) & (sweep["quantity"] == quantity) & (sweep["body_or_mesh"] == item)
     ]
@@ -59,8 +76,22 @@ def rms_axis() -> Axis:
 
 
 def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Figure:
-    """RMS (without mean) of translations, one panel for each body, first direction
-    only.
+    """Draw the RMS without mean of translations over speed, a panel for each body, of the first direction of
+    the sweep.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    bodies : sequence of str
+        Names of the bodies.
+    letters : str
+        Axes to draw, such as `xy`.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     direction = sweep["direction"].iloc[0]
     panels = []
@@ -81,8 +112,25 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
 def mesh_sweeps(
     sweep: pd.DataFrame, jumps: pd.DataFrame, pinions: Sequence[str], sides: Sequence[str]
 ) -> Figure:
-    """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps are marked, and where
-    irregular motion begins or ends.
+    """Draw the RMS without mean of mesh deflections over rising and falling speed, a panel for each mesh.
+
+    Ticks mark jumps, dotted ticks where irregular motion begins or ends.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    jumps : DataFrame
+        Table of the jumps of the sweep.
+    pinions : sequence of str
+        Names of the pinions.
+    sides : sequence of str
+        Face gears, `upper` or `lower`.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for pinion, side in [(pinion, side) for side in sides for pinion in pinions]:
@@ -129,9 +177,22 @@ LINES: Mapping[str, LineStyle] = {"up": "solid", "down": "dash"}
 
 
 def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]) -> Figure:
-    """RMS (without mean) of the deflections of some meshes over speed, a panel for each, a colour a machine.
+    """Draw the RMS without mean of mesh deflections over speed for several machines, a colour for each
+    machine.
 
-    `sweeps`: tidy tables of sweeps by label; drawn through: speed rising, dashed: falling.
+    A solid line is for rising speed, a dashed one for falling speed.
+
+    Parameters
+    ----------
+    sweeps : mapping of str to DataFrame
+        Tidy table of the sweep of each machine by its label.
+    meshes : sequence of str
+        Names of the meshes, a panel for each.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     speeds = speed_axis(pd.concat([sweep[["speed_rpm"]] for sweep in sweeps.values()]))
     panels = []
@@ -158,8 +219,27 @@ CLASS_COLOURS = {"pinion": BLUE, "face gear": ORANGE, "pinion coupled face gear"
 def campbell(
     frequencies: pd.DataFrame, resonances: pd.DataFrame, jumps: pd.DataFrame, teeth: int, last_rpm: float
 ) -> Figure:
-    """Natural frequencies, multiples of the mesh frequency, and what the sweep found: peaks, jumps, and where
-    irregular motion begins or ends.
+    """Draw natural frequencies and multiples of the mesh frequency over speed, with what the sweep found.
+
+    Marks: peaks, jumps, and where irregular motion begins or ends.
+
+    Parameters
+    ----------
+    frequencies : DataFrame
+        Table `frequencies` of stage modal.
+    resonances : DataFrame
+        Table of the peaks of the sweep.
+    jumps : DataFrame
+        Table of the jumps of the sweep.
+    teeth : int
+        Number of teeth of a pinion.
+    last_rpm : float
+        Last speed of the axis, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     top = 1.1 * elastic["frequency_hz"].max()
@@ -189,12 +269,16 @@ def campbell(
 
 
 def _on_line(orders: pd.Series) -> pd.Series:
-    """Mark orders that are multiples of half the mesh frequency; motion that is not locked has others."""
+    """Return which orders are multiples of half the mesh frequency; motion that is not locked to the mesh has
+    others.
+    """
     return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
 
 
 def _marks(rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> Iterator[Curve]:
-    """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
+    """Yield marks at each row's speed and the response frequency of its strongest mode; grey where on no
+    line.
+    """
     unique = rows.drop_duplicates([speed, "resonance"])
     on = _on_line(unique["order"].astype(float))
     for mask, colour, text in ((on, BLACK, label), (~on, grey(0.6), f"{label}, off lines")):
@@ -205,7 +289,24 @@ def _marks(rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) 
 
 
 def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: int) -> Figure:
-    """Spectra of one mesh deflection over speed, one panel for each direction; logarithmic colour."""
+    """Draw the spectra of one mesh deflection over speed, a panel for each direction, in logarithmic colours.
+
+    Parameters
+    ----------
+    spectra : mapping of (...) arrays
+        Speeds, rpm, orders and amplitudes, m, as stage dynamics_sweep stores them in `waterfall`.
+    mesh : int
+        Index of the mesh in the arrays.
+    mesh_name : str
+        Name of the mesh.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
     orders = spectra["orders"][1:]
     amplitudes = {name: 1e6 * spectra[f"{name}_amplitude_m"][:, mesh, 1:] for name in directions}
@@ -233,8 +334,21 @@ VISIBLE = 1e-3
 
 
 def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequence[str]) -> Figure:
-    """Both meshes of each pinion over at most 16 mesh cycles, and their lines up to 4 times the mesh
-    frequency, the mean left out.
+    """Draw the deflections of both meshes of each pinion, over time and as spectra without the mean.
+
+    Parameters
+    ----------
+    response : DataFrame
+        Deflections, µm, over mesh cycles, of which at most SHOWN_CYCLES are drawn.
+    spectrum : DataFrame
+        Amplitudes, µm, over orders, drawn up to SHOWN_ORDERS times the mesh frequency.
+    pinions : sequence of str
+        Names of the pinions.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     last = float(min(SHOWN_CYCLES, response["mesh_cycle"].max()))
     cycles, orders = (
@@ -259,7 +373,7 @@ def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequenc
 
 
 def _lines(spectrum: pd.DataFrame, side: str) -> Curve:
-    """Amplitudes as lines at their orders; order 0 is the mean and left out."""
+    """Return amplitudes as vertical lines at their orders, without order 0, which is the mean."""
     colour, _ = SIDE_STYLES[side]
     rows = spectrum[(spectrum["order"] > 0.0) & (spectrum["order"] <= SHOWN_ORDERS)]
     rows = rows[rows["amplitude_um"] > VISIBLE * rows["amplitude_um"].max()]
@@ -269,7 +383,19 @@ def _lines(spectrum: pd.DataFrame, side: str) -> Curve:
 
 @dataclass(frozen=True)
 class DrawnMachine:
-    """Machine as figures show it: pinions (names), those with a panel, sides of its gears, teeth."""
+    """Names and number of teeth of a machine that its figures show.
+
+    Attributes
+    ----------
+    pinions : tuple of str
+        Names of all pinions.
+    pinions_shown : tuple of str
+        Names of the pinions that have a panel.
+    sides : tuple of str
+        Face gears, `upper` or `lower`.
+    teeth : int
+        Number of teeth of a pinion.
+    """
 
     pinions: tuple[str, ...]
     pinions_shown: tuple[str, ...]
@@ -288,9 +414,21 @@ class DrawnMachine:
 
 
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMachine:
-    """From the plain values of the config's section `transmission`.
+    """Choose the pinions that figures show.
 
-    Pinions of one role and torque stand for each other, the first is shown; where parts differ singly, all.
+    Of pinions with the same role and torque only the first is shown; all are shown where parts differ singly.
+
+    Parameters
+    ----------
+    transmission : mapping
+        Plain values of the config's section `transmission`.
+    pinion_teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    DrawnMachine
+        The names and the number of teeth.
     """
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
@@ -334,9 +472,28 @@ def dynamics_figures(
     spectrum: pd.DataFrame,
     transmission: Mapping[str, Any],
     pinion_teeth: int,
-    **swept: Any,
+    **sweep_tables: Any,
 ) -> list[Figure]:
-    """Deflections at the nominal speed, and every figure of SWEEP_FIGURES from the tables `swept`."""
+    """Draw the deflections at the nominal speed, and every figure of SWEEP_FIGURES.
+
+    Parameters
+    ----------
+    response : DataFrame
+        Table `response` of stage dynamics_response.
+    spectrum : DataFrame
+        Table `spectrum` of stage dynamics_response.
+    transmission : mapping
+        Plain values of the config's section `transmission`.
+    pinion_teeth : int
+        Number of teeth of a pinion.
+    **sweep_tables : Any
+        Tables and arrays of the sweep by the names that SWEEP_FIGURES uses.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     machine = drawn_machine(transmission, pinion_teeth)
     nominal = deflections(response, spectrum, machine.pinions)
-    return [nominal, *(draw(swept, machine) for draw in SWEEP_FIGURES.values())]
+    return [nominal, *(draw(sweep_tables, machine) for draw in SWEEP_FIGURES.values())]

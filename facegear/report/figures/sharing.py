@@ -26,10 +26,26 @@ ENVELOPE = 0.02
 
 
 def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str) -> Figure:
-    """Coefficient against time over one mesh cycle.
+    """Draw the load sharing coefficient of a group over one mesh cycle, a curve for each point of a study.
 
     Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
     instants at which no path carries load. Of several groups of a kind the first is drawn, as in the paper.
+
+    Parameters
+    ----------
+    curves : DataFrame
+        Coefficients of one study over time, s, with their envelopes.
+    summary : DataFrame
+        Mean, half width and class of motion of each point.
+    kind : str
+        Kind of group, `inputs` or `idlers`.
+    title : str
+        Title of the study.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     rows = curves[curves["kind"] == kind]
     group = rows["group"].iloc[0]
@@ -52,7 +68,7 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
 
 
 def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band | Curve]:
-    """One point's curve, its envelope if it has one, and its name with mean and class of motion."""
+    """Yield one point's curve, its envelope if it has one, and a name with mean and class of motion."""
     colour = colour_of(number)
     if mean["motion"] == "period-1":
         curve = _close_cycle(curve)
@@ -67,7 +83,7 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
 
 
 def _close_cycle(curve: pd.DataFrame) -> pd.DataFrame:
-    """The samples of one cycle of a motion that repeats with it, with the end of the cycle."""
+    """Return the samples of one cycle of a period-one motion with its first sample repeated at the end."""
     end = curve.iloc[[0]].copy()
     end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
     return pd.concat([curve, end], ignore_index=True)
@@ -79,7 +95,24 @@ def load_sharing_figures(
     titles: Sequence[str],
     groups: Sequence[str],
 ) -> list[Figure]:
-    """A figure for each study and kind of group."""
+    """Draw a figure for each study and kind of group.
+
+    Parameters
+    ----------
+    studies : sequence of DataFrame
+        Curves of each study.
+    summary : DataFrame
+        Means and classes of motion of all studies.
+    titles : sequence of str
+        Title of each study.
+    groups : sequence of str
+        Kinds of groups, `inputs` or `idlers`.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     return [
         sharing_figure(table, summary, kind, title)
         for table, title in zip(studies, titles, strict=True)
@@ -93,7 +126,20 @@ MAX_BARS = 20
 
 
 def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
-    """Share of its group's load that each mesh carries, mean of each mesh cycle, one panel a group."""
+    """Draw the share of its group's load that each mesh carries in each mesh cycle, a panel for each group.
+
+    Parameters
+    ----------
+    cycles : DataFrame
+        Mean load of each mesh in each mesh cycle, N.
+    meshes : DataFrame
+        Group of each mesh.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for group in [name for name in meshes["group"].dropna().unique() if name]:
         names = meshes.loc[meshes["group"] == group, "mesh"]
@@ -115,7 +161,19 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
 
 
 def bearing_figure(scan: pd.DataFrame) -> Figure:
-    """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
+    """Draw K_gamma over the bearing stiffness of the inputs (top) and of the idlers (below), for both
+    kinematics.
+
+    Parameters
+    ----------
+    scan : DataFrame
+        Table `scan` of stage hunting.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for role in ("inputs", "idlers"):
         curves = []
@@ -132,7 +190,19 @@ def bearing_figure(scan: pd.DataFrame) -> Figure:
 
 
 def sensitivity_figure(table: pd.DataFrame) -> Figure:
-    """The largest sensitivities dK/d(um), one bar an error: that of the group which answers most."""
+    """Draw the largest sensitivities of K_gamma, a bar for each error: that of the group whose factor changes
+    most.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Change of K_gamma of each group by each error, 1/µm.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     largest = table.loc[table.groupby("error")["per_um"].apply(lambda rows: rows.abs().idxmax())]
     rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(MAX_BARS)[::-1]
     positions = np.arange(len(rows), dtype=float)
@@ -163,7 +233,23 @@ def hunting_figures(
     transmission: Transmission,
     teeth: ToothNumbers,
 ) -> tuple[Figure, ...]:
-    """Layout of the machine with its mean forces, loads over the hunting cycle, bearings, single errors."""
+    """Draw the layout with its mean forces, loads over the hunting cycle, K_gamma over bearings,
+    sensitivities.
+
+    Parameters
+    ----------
+    meshes, bearings, cycles, scan, sensitivity : DataFrame
+        Tables of stage hunting and its sensitivities.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth and sizes of the pair.
+
+    Returns
+    -------
+    tuple of Figure
+        The figures.
+    """
     return (
         layout_figure(layout(transmission, teeth), meshes, bearings),
         hunting_figure(cycles, meshes),
@@ -191,11 +277,11 @@ CLOSED_NAME = "closed form"
 def sharing_map_figures(
     curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame
 ) -> tuple[Figure, ...]:
-    """Describe the map.
+    """Draw the map of load sharing.
 
     Parameters
     ----------
-    curves, inputs, points : pd.DataFrame
+    curves, inputs, points : DataFrame
         Tables of stage sharing_map.
 
     Returns
@@ -207,17 +293,19 @@ def sharing_map_figures(
 
 
 def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> Figure:
-    """Describe a panel for the idlers, and one for the inputs.
+    """Draw K_gamma over the number that decides it: a panel for the idlers, and one for the inputs.
+
+    Closed forms are broad grey lines where they hold; the machine is a point at each torque.
 
     Parameters
     ----------
-    curves, inputs, points : pd.DataFrame
+    curves, inputs, points : DataFrame
         Tables of stage sharing_map.
 
     Returns
     -------
     Figure
-        Closed forms are broad grey lines where they hold; the machine is a point at each torque.
+        The figure.
     """
     panels = []
     if len(curves):
@@ -232,14 +320,16 @@ def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.Da
 
 
 def _machine(points: pd.DataFrame, kind: str) -> Curve:
-    """The machine at each of its torques."""
+    """Return marks at the machine's K_gamma (P95) for each of its torques."""
     rows = points[points["kind"] == kind]
     at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
     return Curve(*at, "this machine", BLACK, "none", marker="circle", size=7.0)
 
 
 def _idlers(curves: pd.DataFrame) -> list[Curve]:
-    """P95 for each floating gear; for the machine as given the other percentiles as well."""
+    """Return curves of K_gamma (P95) of the idlers for each floating gear; of the machine as given other
+    percentiles, too.
+    """
     broad: list[Curve] = []
     marks: list[Curve] = []
     for floating, rows in curves.groupby("floating", sort=False):
@@ -256,13 +346,13 @@ def _idlers(curves: pd.DataFrame) -> list[Curve]:
 
 
 def _is_close(rows: pd.DataFrame) -> bool:
-    """Whether the closed form holds for a curve as long as every path carries."""
+    """Return whether the closed form agrees with a curve within HOLDS wherever every path carries load."""
     valid = rows[rows["all_carry"] >= ALL_CARRY]
     return bool((valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs().max() < HOLDS)
 
 
 def _inputs(inputs: pd.DataFrame) -> list[Curve]:
-    """The input that shares worst, for each bearing stiffness."""
+    """Return curves of the largest K_gamma of the inputs, one for each bearing stiffness."""
     broad: list[Curve] = []
     marks: list[Curve] = []
     worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
@@ -276,7 +366,7 @@ def _inputs(inputs: pd.DataFrame) -> list[Curve]:
 
 
 def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
-    """A broad line below the computed one, in the legend once."""
+    """Return the closed form as a broad grey line below the computed curve, in the legend once."""
     return Curve(number, values.to_numpy(), CLOSED_NAME, grey(0.8), width=4.0, in_legend=is_first)
 
 
@@ -287,14 +377,41 @@ PERIODIC = "period-1"
 
 
 def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
-    """A figure for each study over numbers; cells without text may be nan, as they are read."""
+    """Draw a figure of mesh forces for each study whose axis is a number.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Table `forces` of stage load_sharing; empty texts may be nan, as they are read from csv.
+    titles : mapping of str to str
+        Title of each study by its name.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     text = {name: forces[name].astype(object).where(forces[name].notna(), "") for name in ("group", "beside")}
     every = forces.assign(**text).groupby("study", sort=False)
     return [forces_figure(rows, titles[str(name)]) for name, rows in every]
 
 
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
-    """Two panels for each label of the other axis: fraction of the group's load, largest force."""
+    """Draw two panels for each label of the other axis of a study: fraction of the group's load, largest
+    force.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Rows of one study of table `forces` of stage load_sharing.
+    title : str
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     looks = mesh_looks(dict.fromkeys(forces["mesh"]))
     name, unit = split_label(str(forces["axis"].iloc[0]))
     if unit == "N/m":
@@ -326,7 +443,7 @@ def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
 def _curves(
     rows: pd.DataFrame, looks: Mapping[str, Any], column: str, scale: float, in_legend: bool = True
 ) -> Iterator[Curve]:
-    """A curve a mesh; hollow marks where the motion does not repeat with the mesh cycle."""
+    """Yield a curve for each mesh; hollow marks show where the motion does not repeat with the mesh cycle."""
     colours = list(dict.fromkeys(look["colour"] for look in looks.values()))
     for mesh, every in rows.groupby("mesh", sort=False):
         look = looks[str(mesh)]

@@ -236,9 +236,21 @@ BEYOND = "beyond the torques of the contact analysis"
 
 
 def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
-    """Largest values of all meshes: the sweep's as lines, stable branches as dots beneath.
+    """Draw the largest values of all meshes over speed: the sweep as lines, stable branches as dots beneath.
 
-    The operating speed is a line; what lies beyond the torques of the contact analysis is shaded.
+    The operating speed is a line. Values beyond the torques of the contact analysis are shaded.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of stage stress_over_speed.
+    speed_rpm : float
+        Operating speed, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     branch_rows = table[table["motion"].str.startswith("branch ")]
     rows_within_torques = table[table["within_torques_solved"]]
@@ -263,5 +275,18 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
 
 def stress_over_speed_figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Figure, ...]:
-    """Root stress, pressure and dynamic factor over speed."""
+    """Draw root stress, pressure and dynamic factor over speed.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of stage stress_over_speed.
+    speed_rpm : float
+        Operating speed, rpm.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     return (stress_over_speed(table, speed_rpm),)

@@ -56,7 +56,7 @@ def test_masses_on_torsional_springs_swing_at_the_roots_of_their_closed_form():
 def test_statics_with_shafts_and_turning_masses_are_those_of_dense_algebra(shaft, monkeypatch):
     machine = driven(shaft, masses=CHAINS)
     quick = equilibria(machine, CYCLES)
-    monkeypatch.setattr(statics, "has_blocks", lambda machine: False)
+    monkeypatch.setattr(statics, "static_blocks", lambda machine: None)
     dense = equilibria(machine, CYCLES)
     np.testing.assert_allclose(quick.flank_forces, dense.flank_forces, atol=1e-5)
     # The rigid rotation is nobody's; all else is the same.
@@ -198,7 +198,7 @@ def test_gears_that_bend_take_pinions_on_shafts_and_masses_behind_springs(monkey
     assert linear.labels[:first] == machine.linear.labels
     np.testing.assert_array_equal(linear.stiffness[:first, :first], machine.linear.stiffness)
     np.testing.assert_array_equal(linear.spin.gyroscopic[:first, :first], machine.linear.spin.gyroscopic)
-    monkeypatch.setattr(statics, "has_blocks", lambda machine: False)
+    monkeypatch.setattr(statics, "static_blocks", lambda machine: None)
     np.testing.assert_allclose(quick.forces, mean_equilibrium(bending).forces, atol=1e-4)
     modes = loaded_modes(bending)
     assert modes.frequencies.size == linear.size

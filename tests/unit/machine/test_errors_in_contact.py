@@ -14,7 +14,7 @@ from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.placement import mirror_design
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 SHIFT = 1e-6
 PHI = [0.02]

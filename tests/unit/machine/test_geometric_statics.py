@@ -13,9 +13,8 @@ from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.harmonics import Harmonics
-from facegear.machine.block_statics import Springs, settle_all, static_springs
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps
+from facegear.machine.block_statics import Springs, settle_all, static_blocks
+from facegear.machine.flanks import flank_edges
 from facegear.machine.imperfections import Runout, perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, Role, Side, Tilt
@@ -55,10 +54,10 @@ def machine_with(layout, torque=800.0, tail_share=0.0, backlash=100e-6, **errors
 
 def held_forces(machine):
     """Mesh forces (meshes,) of flanks drive - back with both face gears held against turning."""
-    springs = static_springs(machine)
+    springs = static_blocks(machine).springs
     core = np.arange(springs.loads.size - 3 * len(machine.layout.pinions))
     springs = springs._replace(core_row=core, core_column=core, core_value=np.full(core.size, HELD))
-    gaps = (constant_errors(machine) + flank_gaps(machine))[None]
+    gaps = (flank_edges(machine))[None]
     law = linear_law(gaps.size * [FLAT])
     start = np.zeros(springs.loads.size)
     _, forces, residual = settle_all(springs, law.statics_law(np.zeros(1)), gaps, TOLERANCE, start)
@@ -231,7 +230,7 @@ def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(dat
     directions, bearing = flank_jacobian(layout), bearing_matrix(layout)
     applied = np.zeros(layout.dof)
     applied[layout.spins] = machine.torques
-    gap = constant_errors(machine) + flank_gaps(machine)
+    gap = flank_edges(machine)
     stiffness = K * np.tile(machine.imperfections.stiffness, 2)
     forces = mean_equilibrium(machine).flank_forces[0]
     scale = np.ones(layout.dof)
@@ -403,7 +402,7 @@ def test_a_pinion_inside_its_clearance_floats_and_beyond_it_is_held():
 
 def test_springs_hold_no_hidden_state():
     machine = machine_with(make_layout(kinematics=GEOMETRIC), 900.0, 0.1)
-    assert isinstance(static_springs(machine), Springs)
+    assert isinstance(static_blocks(machine).springs, Springs)
     cycles = np.array([3.3, 0.2, 1700.1])
     together = equilibria(machine, cycles).flank_forces
     alone = np.concatenate([equilibria(machine, cycles[k : k + 1]).flank_forces for k in range(3)])

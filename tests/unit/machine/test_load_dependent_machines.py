@@ -8,8 +8,7 @@ from force_tables import power_table
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps, flank_law
+from facegear.machine.flanks import flank_edges, flank_law
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Side
 from facegear.machine.linear_model import bearing_matrix, flank_jacobian, mass_diagonal
@@ -73,7 +72,7 @@ def test_frequencies_of_a_loaded_machine_are_those_of_differences_of_its_forces(
     machine = made()
     layout = machine.layout
     place = mean_equilibrium(machine).displacements[0]
-    directions, gaps = flank_jacobian(layout), constant_errors(machine) + flank_gaps(machine)
+    directions, gaps = flank_jacobian(layout), flank_edges(machine)
     law = flank_law(machine).mean()
 
     def restoring(displacements):

@@ -1,6 +1,3 @@
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from free_machines import natural_modes, rigid_rotation
@@ -91,13 +88,3 @@ def test_a_single_face_gear_with_two_pinions_has_its_modes(layout_of):
     modes = natural_modes(layout, 4.1e8)
     assert modes.frequencies.size == 12
     assert (modes.frequencies == 0.0).sum() == 3
-
-
-def test_the_modal_stage_imports_nothing_heavy():
-    code = (
-        "import sys; from facegear.schema import lumped_model; from facegear.machine import modes, "
-        "mode_classes, modal_tables; print(sorted("
-        "{'skfem', 'gmsh', 'matplotlib', 'meshio'} & set(sys.modules)))"
-    )
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert found.strip() == "[]"

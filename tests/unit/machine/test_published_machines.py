@@ -12,6 +12,7 @@ import pytest
 from references import against, agrees
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.machine.shaft_orders import loaded_machine
 
 TO_SI = 0.11298
@@ -151,7 +152,7 @@ def test_the_propellers_shaft_carries_the_torque_that_opentorsion_finds():
 
 def test_torque_and_inertia_of_the_propeller_balance_at_every_frequency():
     """The spring's torque and the excitation turn the propeller's mass, in the whole motion of all bodies."""
-    machine = make_marine_drive()._machine()
+    machine = machine_of(make_marine_drive())
     excitation = replace(machine.excitations[0], amplitude=1000.0, phase=0.7)
     loaded, spring = loaded_machine(machine), machine.drive_line.springs()[-1]
     motion = loaded.excited_motion(machine, excitation, 500.0)

@@ -11,7 +11,7 @@ from rocking_bodies import InOtherCoordinates, Rocking, whirl
 
 from facegear.errors import NotConverged
 from facegear.machine import statics
-from facegear.machine.block_statics import has_blocks
+from facegear.machine.block_statics import static_blocks
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC, KINEMATICS
 from facegear.machine.layout import Role, Side
@@ -103,7 +103,7 @@ def test_flanks_tilt_a_body_by_their_forces_times_their_levers():
     machine = machine_with(None)
     rows = levers(machine)
     machine = replace(machine, bodies=Rocking(BODY, J, STIFFNESS, levers=rows))
-    assert has_blocks(machine)
+    assert static_blocks(machine) is not None
     found = equilibria(machine, np.array([0.1, 0.7]))
     expected = -found.flank_forces @ rows / STIFFNESS
     np.testing.assert_allclose(found.displacements[:, -2:], expected, rtol=1e-9)
@@ -112,7 +112,7 @@ def test_flanks_tilt_a_body_by_their_forces_times_their_levers():
 def test_a_shaft_that_couples_displacement_and_tilt_bends_by_its_whole_compliance():
     bodies, free = Rocking(BODY, J, STIFFNESS, leaning=1.2e6), machine_with(None)
     machine = replace(free, bodies=bodies)
-    assert not has_blocks(machine)
+    assert static_blocks(machine) is None
     found, linear = mean_equilibrium(machine), machine.linear
     at = [0, linear.size - 1]
     pushed = found.flank_forces[0] @ linear.rows[:, 0]
@@ -129,7 +129,7 @@ def test_both_solvers_of_statics_agree(clearance, monkeypatch):
     )
     cycles = np.array([0.0, 0.4])
     by_blocks = equilibria(machine, cycles)
-    monkeypatch.setattr(statics, "has_blocks", lambda machine: False)
+    monkeypatch.setattr(statics, "static_blocks", lambda machine: None)
     dense = equilibria(machine, cycles)
     largest = by_blocks.flank_forces.max()
     np.testing.assert_allclose(dense.flank_forces, by_blocks.flank_forces, atol=1e-9 * largest)

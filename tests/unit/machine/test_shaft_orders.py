@@ -15,7 +15,7 @@ from facegear.machine.imperfections import Runout, ToothErrors, perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role
 from facegear.machine.shaft_orders import loaded_machine, mesh_amplitudes, turn_orders
-from facegear.motion.following import follow
+from facegear.motion.hunting_motion import follow
 from facegear.motion.steady_state.simulate import build_model
 from facegear.sharing.hunting import hunting_cycle
 

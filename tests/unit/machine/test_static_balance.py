@@ -11,8 +11,7 @@ from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.harmonics import Harmonics
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps
+from facegear.machine.flanks import flank_edges
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC, KINEMATICS, PRINTED_KINEMATICS
 from facegear.machine.layout import Layout, Role, Side
@@ -157,13 +156,13 @@ def test_a_static_result_whose_forces_do_not_balance_is_refused(kinematics):
     found = static_equilibrium(machine)
     if kinematics is GEOMETRIC:
         forces = mean_equilibrium(machine).flank_forces
-        gaps = (constant_errors(machine) + flank_gaps(machine))[None]
+        gaps = (flank_edges(machine))[None]
     else:
         forces, gaps = found.forces[None], machine.half_backlash[None]
     stiffness = np.full_like(gaps, K)
-    right = balance(machine, found.displacements[None], forces, stiffness, gaps)
+    right = balance(machine.linear, found.displacements[None], forces, stiffness, gaps)
     right.require(1e-10, ["at rest"])
-    wrong = balance(machine, 1.000001 * found.displacements[None], forces, stiffness, gaps)
+    wrong = balance(machine.linear, 1.000001 * found.displacements[None], forces, stiffness, gaps)
     with pytest.raises(NotConverged, match="at rest: forces and moments out of balance"):
         wrong.require(1e-10, ["at rest"])
 
@@ -176,13 +175,13 @@ def test_the_balance_counts_every_degree_of_freedom():
     held = np.flatnonzero(np.diag(bearing_matrix(layout)))
     moved = found.displacements + 1e-9 * np.eye(layout.dof)[held]
     forces = np.tile(found.flank_forces, (held.size, 1))
-    gaps = np.tile(constant_errors(machine) + flank_gaps(machine), (held.size, 1))
-    checked = balance(machine, moved, forces, np.full_like(gaps, K), gaps)
+    gaps = np.tile(flank_edges(machine), (held.size, 1))
+    checked = balance(machine.linear, moved, forces, np.full_like(gaps, K), gaps)
     largest = abs(machine.torques[6]) / layout.gear_arm
     expected = 1e-9 * np.diag(bearing_matrix(layout))[held] / largest
     np.testing.assert_allclose(checked.residual, expected, rtol=1e-6)
     np.testing.assert_allclose(
-        bearing_loads(machine, found.displacements) + found.flank_forces @ flank_jacobian(layout),
+        bearing_loads(machine.linear, found.displacements) + found.flank_forces @ flank_jacobian(layout),
         [np.where(np.arange(28) % 4 == 3, np.repeat(machine.torques, 4), 0.0)],
         atol=1e-8,
     )

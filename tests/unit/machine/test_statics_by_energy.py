@@ -10,8 +10,7 @@ from references import against, agrees
 from scipy.optimize import minimize
 
 from facegear.harmonics import Harmonics
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps
+from facegear.machine.flanks import flank_edges
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, Role, Side
@@ -55,7 +54,7 @@ def potential(machine):
     scale = np.ones(layout.dof)
     scale[layout.spins] = 1.0 / layout.pinion_radius
     directions = flank_jacobian(layout)
-    gap = constant_errors(machine) + flank_gaps(machine)
+    gap = flank_edges(machine)
     stiffness = K * np.tile(flaws.stiffness, 2)
     bearing = bearing_diagonal(layout)
     pinions = len(layout.pinions)
@@ -100,7 +99,7 @@ def test_with_bearing_clearance_the_statics_are_the_least_energy_that_a_general_
     assert np.abs(other.jac).max() < 1e-4 * size
     assert least <= other.fun + 1e-9 * abs(least)
     agrees("elastic energy, uJ", other.fun, least, relative=1e-6, absolute=1e-6 * size)
-    over = flank_jacobian(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
+    over = flank_jacobian(machine.layout) @ (to_si * other.x) - flank_edges(machine)
     forces = K * np.tile(machine.imperfections.stiffness, 2) * np.maximum(over, 0.0)
     agrees("flank force, N", forces, found.flank_forces[0], relative=1e-7, absolute=5e-3 * size)
     count = len(machine.layout.pinions)

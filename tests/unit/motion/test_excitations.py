@@ -14,6 +14,7 @@ from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation, rigid_rotation, without_rigid_rotation
@@ -134,7 +135,7 @@ def test_an_order_that_does_not_repeat_with_the_mesh_is_refused_in_motion_alone(
 
 
 def test_a_gears_order_counts_its_own_turns():
-    assert make_shaken(240, "lower")._machine().excitations[0].mesh_harmonic == 2
+    assert machine_of(make_shaken(240, "lower")).excitations[0].mesh_harmonic == 2
 
 
 def test_a_body_that_is_not_there_is_refused_with_the_names_that_are():
@@ -162,7 +163,7 @@ def test_values_and_a_pickled_machine_keep_their_excitations():
     copies = facegear.load(gearbox.values, None), pickle.loads(pickle.dumps(gearbox))
     for copy in copies:
         assert copy.config.transmission.excitations == gearbox.config.transmission.excitations
-        assert copy._machine().excitations == gearbox._machine().excitations
+        assert machine_of(copy).excitations == machine_of(gearbox).excitations
 
 
 def test_a_rexs_file_says_that_it_lost_the_excitations(tmp_path):
@@ -202,7 +203,7 @@ def test_a_periodic_torque_shakes_each_kind_of_machine_as_its_linear_response(na
     """Stiffness that varies with phase and load makes the motion differ a little."""
     calm = facegear.example().with_values(COMBINED[name])
     shaken = calm.with_values({"transmission.excitations": SHAKEN})
-    assert_shaken_as_linear(calm._machine(), shaken._machine(), calm.values["dynamics"]["speed_rpm"])
+    assert_shaken_as_linear(machine_of(calm), machine_of(shaken), calm.values["dynamics"]["speed_rpm"])
 
 
 def test_a_periodic_torque_shakes_gears_that_bend_as_their_linear_response():

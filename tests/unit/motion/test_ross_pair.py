@@ -13,6 +13,7 @@ import pytest
 from references import against, agrees
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.motion.plan import Motion, Settings
 from facegear.motion.steady_state.simulate import build_model, simulate
 
@@ -57,7 +58,7 @@ def deflection():
             "torque": {"per_input_n_m": 1000.0 * first, "tail_share": 0},
         },
     }
-    machine = facegear.load(values, None)._machine()
+    machine = machine_of(facegear.load(values, None))
     model, omega = build_model(machine), 0.95 * np.sqrt(STIFFNESS / mass)
     response = simulate(model, omega / TEETH[0] * 30.0 / np.pi, Settings(tolerance=1e-10, samples=1024))
     assert (response.motion, response.period) == (Motion.PERIODIC, 1)

@@ -138,8 +138,8 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
 
     monkeypatch.setattr("facegear.parts.tooth_layer.fitted_teeth", fit)
     monkeypatch.setattr(stage, "solve_body", solve)
-    monkeypatch.setattr("facegear.parts.gear_body.solve_body", solve)
-    monkeypatch.setattr("facegear.parts.gear_body.reduced_body", lambda *given: None)
+    monkeypatch.setattr(varied_bodies, "solve_body", solve)
+    monkeypatch.setattr(varied_bodies, "reduced_body", lambda *given: None)
     common = parse(BodySection, DISC)
     fitted = common.model_copy(update={"teeth": "fitted"})
     bodies = {"lower": common, "upper": fitted}

@@ -9,7 +9,7 @@ from facegear.machine.flank_errors import slow_errors
 from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role
-from facegear.motion.following import follow, slow_polynomials
+from facegear.motion.hunting_motion import follow, slow_polynomials
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import build_model, simulate
@@ -32,7 +32,7 @@ def machine_with(**errors):
     "analytic",
     "runouts as sines of the angles of turn",
     capability="following",
-    module="facegear.motion.following",
+    module="facegear.motion.hunting_motion",
 )
 def test_the_slow_part_of_the_error_is_that_of_the_statics_and_has_no_jumps():
     model = build_model(machine_with(**TURNING))
@@ -68,7 +68,7 @@ def test_running_slowly_is_the_quasi_static_hunting_cycle():
     "analytic",
     "without anything that turns the motion is the periodic one",
     capability="following",
-    module="facegear.motion.following",
+    module="facegear.motion.hunting_motion",
 )
 def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     machine = machine_with()
@@ -86,7 +86,7 @@ def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     "own convergence",
     "tolerance 1e-11, and the same cycles a turn later",
     capability="following",
-    module="facegear.motion.following",
+    module="facegear.motion.hunting_motion",
 )
 def test_the_followed_motion_does_not_depend_on_the_step_and_repeats_after_the_turns():
     machine = machine_with(pinion_runout=TURNING["pinion_runout"])

@@ -10,6 +10,7 @@ from references import against, agrees
 from test_closed_form import config_of
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.errors import ConfigErrors
 from facegear.harmonics import Harmonics
 from facegear.machine.layout import Role, Side
@@ -67,7 +68,7 @@ def test_curves_of_inputs_are_the_loop_formula():
 def test_curves_of_a_hundred_random_machines_collapse_where_paths_part_too(sides):
     """Mesh and bearing stiffness, torque and number of samples late differ; the drawn errors are the same."""
     random, spread = np.random.default_rng(1), {}
-    base = floated(make_idlers(5)._machine(), sides)
+    base = floated(machine_of(make_idlers(5)), sides)
     group = groups_of_kind(base, GroupKind.IDLERS)[0]
     drawn = draws(group, MapOptions(1.0, 1.0, 100, 2, 3, (1.0,)))
     for _ in range(100):
@@ -128,7 +129,7 @@ def test_each_advice_is_what_statics_of_the_changed_config_find(words):
 
 def test_a_drawn_path_is_late_as_an_error_of_its_upper_mesh_is():
     gearbox = make_split()
-    mapped = MappedMachine(gearbox._machine())
+    mapped = MappedMachine(machine_of(gearbox))
     group = groups_of_kind(mapped.machine, GroupKind.IDLERS)[0]
     late = 1e-6 * np.array([[7.0, -3.0, 4.0]])
     errors = {f"idler {n}/upper": {"error_um": um} for n, um in zip((1, 3, 4), 1e6 * late[0], strict=True)}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from idler_machines import make_idlers
 
+from facegear.door.outputs import machine_of
 from facegear.harmonics import Harmonics
 from facegear.machine.layout import Role
 from facegear.sharing.groups import GroupKind
@@ -18,7 +19,7 @@ MESHES, TORQUE, BEARINGS = 7.9, 0.42, 0.7
 
 def make_stiff():
     """Build five idlers with stiff meshes under a small torque."""
-    base = make_idlers(5)._machine()
+    base = machine_of(make_idlers(5))
     stiff = Harmonics(np.zeros(1), MESHES * base.stiffness.cosine)
     loaded = replace(base, stiffness=stiff, torques=TORQUE * base.torques)
     return with_scaled_bearings(loaded, (Role.IDLER,), BEARINGS)

@@ -13,6 +13,7 @@ from facegear.build.load import load_config
 from facegear.build.machine import MachineInputs
 from facegear.build.machine_layout import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
+from facegear.door.outputs import machine_of
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.static_gears import at_rest
@@ -142,4 +143,4 @@ def test_machine_that_is_exported_bends_as_the_one_that_is_computed(monkeypatch,
         "bodies": stiff(2e4).arrays("upper"),
     }
     monkeypatch.setattr(Chain, "arguments", lambda self, stage: given)
-    assert box._machine().bodies is not None
+    assert machine_of(box).bodies is not None

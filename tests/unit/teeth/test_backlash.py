@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from facegear.report.figures.teeth import path_text
-from facegear.teeth import unloaded
+from facegear.teeth import unloaded_contact
 from facegear.teeth.analysis import analyse
 from facegear.teeth.backlash import normal_backlash
 from facegear.teeth.design import AssemblyErrors, GearModifications, Relief
@@ -42,14 +42,14 @@ def test_positions_that_are_asked_for_too_change_no_backlash_and_are_not_searche
         searched.append(len(np.atleast_1d(phi1)))
         return original(of, phi1, **named)
 
-    original = unloaded.searched_contact
+    original = unloaded_contact.searched_contact
     alone = normal_backlash(design)
-    unloaded._searched_motion.cache_clear()
-    monkeypatch.setattr(unloaded, "searched_contact", counted)
+    unloaded_contact._searched_motion.cache_clear()
+    monkeypatch.setattr(unloaded_contact, "searched_contact", counted)
     positions = tuple(number / 16 for number in range(16))
     assert normal_backlash(design, positions) == pytest.approx(alone, rel=1e-9)
     assert searched == [16, 4]  # the drive flank at all positions, the back flank at those of the backlash
-    phi2, error = unloaded.unloaded_motion(design, pinion_angle(design, positions))
+    phi2, error = unloaded_contact.unloaded_motion(design, pinion_angle(design, positions))
     assert searched == [16, 4]
     monkeypatch.undo()
     again = original(design, pinion_angle(design, positions), every_pair=False)

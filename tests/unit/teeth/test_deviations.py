@@ -16,7 +16,7 @@ from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_fla
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_face, flank_points
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 MIDDLE = 262.5 * MM
 

@@ -15,7 +15,7 @@ from facegear.machine.layout import Side
 from facegear.machine.linear_model import flank_jacobian
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.placement import FLANKS, GEARS, distinct_pairs, errors_at
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 PATHS = [
     ((120e-6, 0.0, radians(0.03)), 264.388284, 269.136890),
@@ -51,7 +51,7 @@ def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, error
     "analytic",
     "normal part of a displacement",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 @pytest.mark.parametrize("gear", GEARS)
 @pytest.mark.parametrize("flank", FLANKS)

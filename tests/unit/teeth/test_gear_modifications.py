@@ -14,7 +14,7 @@ from facegear.teeth.placement import mirror_design, to_left_flank
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_points
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 KINDS = {
     "tip relief": GearModifications(tip_relief=Relief(50 * UM, 0.5 * MM, 1.5 * MM)),

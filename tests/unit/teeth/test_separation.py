@@ -17,7 +17,7 @@ from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_fla
 from facegear.teeth.rays import FILLET, FLANK, ROOT_LAND, TIP_LAND
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import SurfacePoints, fillet_points, flank_points
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 from facegear.teeth.validate import check
 
 
@@ -29,7 +29,7 @@ def pitch(design, count):
     "analytic",
     "conjugate flanks: line contact without transmission error",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
     design = pair(23)
@@ -47,7 +47,7 @@ def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
     "analytic",
     "localised contact lies at the pitch radius",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 @pytest.mark.parametrize("teeth", [24, 25, 26])
 def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
@@ -147,7 +147,7 @@ def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
     """The contours' own error: the parabola over the sampled mesh positions."""
     design = pair(26)
     contours = ease_off(design, 0.0, (9, 10))
-    facing = contours.facing[4]
+    facing = contours.is_facing[4]
     assert facing.sum() >= 8
     expected = closed_form(design, contours.y[4][facing])
     agrees("separation, m", contours.gap[4][facing], expected, relative=1e-7, absolute=2e-7)
@@ -214,7 +214,7 @@ def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
     "analytic",
     "normal part of a displacement",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
     shift = 1e-7
@@ -228,7 +228,7 @@ def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
     "analytic",
     "thinning of a flank",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 def test_thinning_turns_the_gear_back_by_half_of_it(pair):
     contact = unloaded_contact(pair(26, thinning=8e-5), pitch(pair(), 4))
@@ -239,7 +239,7 @@ def test_thinning_turns_the_gear_back_by_half_of_it(pair):
     "analytic",
     "mirror symmetry",
     capability="geometry",
-    module="facegear.teeth.unloaded",
+    module="facegear.teeth.unloaded_contact",
 )
 def test_mirrored_pair_has_the_mirrored_contact(pair):
     design = pair(26, offset=8e-5)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
-from facegear.teeth.unloaded import unloaded_contact, unloaded_motion
+from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
 
 def test_a_touch_of_edges_where_each_turn_leaves_half_of_the_gap_is_found():

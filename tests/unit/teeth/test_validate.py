@@ -23,7 +23,7 @@ from facegear.teeth.mesh_quality import scaled_jacobians
 from facegear.teeth.mesh_sizes import named_sizes
 from facegear.teeth.pinion import removed_depth
 from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 from facegear.teeth.validate import MAX_RELIEF, check
 
 GEAR, MADE = "face_gear__modifications", "face_gear.modifications"
@@ -83,7 +83,7 @@ def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_la
         check(design)
     except GeometryError as error:
         assert error.quantity == "pinion.lead_crowning.length_mm"
-        least = float(str(error.allowed).split("at least ")[1].split(":")[0])
+        least = float(str(error.requirement).split("at least ")[1].split(":")[0])
         assert least > 1e3 * length
         design = changed(design, pinion__lead_crowning=Relief(amount, start, 1.001e-3 * least))
         check(design)

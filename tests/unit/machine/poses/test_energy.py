@@ -13,8 +13,7 @@ from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
 from facegear.machine.elastic_gears import ElasticGears
-from facegear.machine.flank_errors import constant_errors
-from facegear.machine.flanks import flank_gaps
+from facegear.machine.flanks import flank_edges
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Side, Tilt
 from facegear.machine.machine import FlankTables
@@ -260,7 +259,7 @@ def test_meshes_with_forces_that_follow_the_load_are_pressed_in_as_contact_at_th
     result = operating_pose(machine, surface)
     posed, meshes = result.machine, len(machine.layout.meshes)
     at_rest = mean_equilibrium(posed)
-    over = posed.linear.rows @ at_rest.displacements[0] - constant_errors(posed) - flank_gaps(posed)
+    over = posed.linear.rows @ at_rest.displacements[0] - flank_edges(posed)
     carrying = np.arange(meshes) + meshes * (result.forces < 0.0)
     known = [
         mesh_energy(surface, *at).approach

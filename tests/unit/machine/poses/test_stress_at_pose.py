@@ -81,7 +81,7 @@ def test_contact_solved_at_the_pose_of_a_mesh_changes_stress_as_the_surface_says
     stated = gearbox._chain.part("pose_surface", "errors").groupby("quantity")["largest"].max()
     given = gearbox._chain.arguments("rating")
     assembled = flank_contacts(given["stress"], given["by_flank"])["upper", "drive"]
-    solved = solved_contacts(given["posed"], given["posed_by_torque"])
+    solved = solved_contacts(given["posed_contacts"], given["posed_by_torque"])
     rest = ContactPose(contact_at(surface.pair, surface.nominal).y, 0.0)
     for mesh in ("left idler/upper", "tail idler/lower"):
         number = given["posed_by_torque"].set_index("mesh")["contact"][mesh].iloc[0]

@@ -54,7 +54,7 @@ def test_two_equal_runs_show_no_difference(nominal, tmp_path, capsys):
     again = answered(tmp_path)
     found = compare(nominal, again)
     assert found.equal and found.rows.empty
-    assert found.counts[Verdict.SAME] > 500
+    assert found.counts[Verdict.UNCHANGED] > 500
     assert main(["compare", str(nominal), str(again)]) == 0
     assert capsys.readouterr().out == "Both folders say the same.\n"
 
@@ -64,13 +64,13 @@ def test_a_mesh_a_thousandth_stiffer_is_found(nominal, tmp_path):
     stiffer = answered(tmp_path, transmission__single_meshes={mesh: {"stiffness_factor": 1.001}})
     found = compare(nominal, stiffer)
     assert not found.equal
-    moved = found.rows[found.rows["verdict"] == Verdict.MOVED]
+    moved = found.rows[found.rows["verdict"] == Verdict.BEYOND_ERROR]
     assert {"dynamics/bearings.csv"} <= set(moved["file"])
     assert "stiffness/harmonics.csv" not in set(found.rows["file"])
 
 
 @pytest.mark.parametrize(
-    ("factor", "verdict"), [(1 + 1e-12, None), (1.002, Verdict.WITHIN_ERROR), (1.01, Verdict.MOVED)]
+    ("factor", "verdict"), [(1 + 1e-12, None), (1.002, Verdict.WITHIN_ERROR), (1.01, Verdict.BEYOND_ERROR)]
 )
 def test_a_number_is_judged_by_its_own_numerical_error(factor, verdict, nominal, tmp_path):
     shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
@@ -151,11 +151,11 @@ JUMPS = (5806.5, 15.7, 0.956), (8876.0, 20.0, 0.95)
     ("moved", "verdicts"),
     [
         ((8876.0, 20.0, 0.95 + 1.3e-6), {Verdict.WITHIN_ERROR}),
-        ((8876.0, 20.0, 0.95 + 2e-2), {Verdict.MOVED}),
-        ((8876.0, 20.1, 0.95), {Verdict.MOVED}),
+        ((8876.0, 20.0, 0.95 + 2e-2), {Verdict.BEYOND_ERROR}),
+        ((8876.0, 20.1, 0.95), {Verdict.BEYOND_ERROR}),
         ((8877.5, 20.1, 0.93), {Verdict.WITHIN_ERROR}),
-        ((8877.5, 22.0, 0.93), {Verdict.WITHIN_ERROR, Verdict.MOVED}),
-        ((8878.5, 20.0, 0.95), {Verdict.GONE, Verdict.ADDED}),
+        ((8877.5, 22.0, 0.93), {Verdict.WITHIN_ERROR, Verdict.BEYOND_ERROR}),
+        ((8878.5, 20.0, 0.95), {Verdict.ONLY_IN_OLD, Verdict.ONLY_IN_NEW}),
     ],
 )
 def test_a_jump_is_compared_within_the_error_of_its_bracket(moved, verdicts, tmp_path):
@@ -171,7 +171,7 @@ def test_a_jump_that_ends_irregular_motion_is_known_to_a_step_of_the_sweep(tmp_p
 
 def test_jumps_of_two_directions_are_not_taken_for_one_another(tmp_path):
     old, new = jumps(tmp_path / "old", *JUMPS), jumps(tmp_path / "new", *JUMPS, direction="down")
-    assert set(compare(old, new).rows["verdict"]) == {Verdict.GONE, Verdict.ADDED}
+    assert set(compare(old, new).rows["verdict"]) == {Verdict.ONLY_IN_OLD, Verdict.ONLY_IN_NEW}
 
 
 @pytest.mark.parametrize(("residual", "equal"), [(6e-13, True), (2e-12, False)])
@@ -201,7 +201,7 @@ def test_rows_columns_and_tables_of_one_folder_only_are_named(nominal, tmp_path)
     table = pd.read_csv(tmp_path / "dynamics/bearings.csv")
     table.drop(columns="peak_n").iloc[1:].to_csv(tmp_path / "dynamics/bearings.csv", index=False)
     gone = compare(nominal, tmp_path).rows
-    assert set(gone["verdict"]) == {Verdict.GONE}
+    assert set(gone["verdict"]) == {Verdict.ONLY_IN_OLD}
     assert {"whole table", "column peak_n"} < set(gone["row"]) and len(gone) == 3
 
 
@@ -307,8 +307,8 @@ def write_sweep(folder, values, broken=True):
     ("values", "broken", "verdict"),
     [
         ((70.0, 17.0, 27.0), True, Verdict.MIRROR),
-        ((70.0, 17.0, 27.0), False, Verdict.MOVED),
-        ((70.0, 18.0, 27.0), True, Verdict.MOVED),
+        ((70.0, 17.0, 27.0), False, Verdict.BEYOND_ERROR),
+        ((70.0, 18.0, 27.0), True, Verdict.BEYOND_ERROR),
     ],
     ids=["image", "symmetric motion", "another motion"],
 )

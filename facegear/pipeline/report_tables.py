@@ -1,4 +1,9 @@
-"""Tables that the report of a case reads, and how long they take to compute."""
+"""Tables that the report of a case reads, and how long they take to compute.
+
+Estimates of the processor time of a report, before any of its stages runs. They are rough: within a factor of
+three on one core of a processor of 2020 (docs/reference/speed.md). Stages that take a second or less are left
+out.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import ceil
@@ -9,7 +14,7 @@ from facegear.arrays import Arrays
 from facegear.build.tooth_pair import ToothPair, contact_setup, pair_design
 from facegear.number_format import count_noun
 from facegear.pipeline.arguments import typed_arguments
-from facegear.pipeline.asked import CONTACT
+from facegear.pipeline.conditions import CONTACT
 from facegear.pipeline.needs import stages_before
 from facegear.pipeline.stage import Case, Stage
 from facegear.pipeline.table import STAGES
