@@ -1,7 +1,7 @@
 """The errors of single meshes and bodies that section `transmission` describes, in SI.
 
 Lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
-`config.machines` adds the mesh stiffness as its stage has stored it.
+`facegear.build.machine` adds the mesh stiffness as its stage has stored it.
 """
 
 from collections.abc import Mapping, Sequence

@@ -217,7 +217,7 @@ class RootGauges:
 
     a down the fillet, b along the face. `position` (2, a, b, 3) m and unit vectors `across` (2, a, b, 3) down
     the fillet, in the body frame with the tooth in the middle. `error` (b,): relative error of the largest
-    stress at each place along the face that the mesh is measured to make (`contact.section_error`).
+    stress at each place along the face that the mesh is measured to make (`section_errors`).
     """
 
     position: Array

@@ -33,7 +33,7 @@ def flank_table(section: ToothPair) -> pd.DataFrame:
     -------
     pd.DataFrame
         One row for each grid point of a flank, columns as COLUMNS; points in mm of tooth 1, see
-        `geometry.design`.
+        `facegear.teeth.design`.
 
     Raises
     ------

@@ -194,7 +194,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
 
 
 SAMPLES = 64
-"""Places in the mesh cycle for each harmonic of the mesh stiffness, as `Harmonics.softened` takes them."""
+"""Phases at which the softened stiffness is computed, for each harmonic of the teeth's own stiffness."""
 
 
 def flank_springs(machine: Machine, contacts: LoadedContacts, contact_mask: Mask) -> Array:

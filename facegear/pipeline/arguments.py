@@ -263,7 +263,7 @@ def without_loads(case: Case) -> Any:
 
 
 def gears_met(case: Case) -> list[str]:
-    """Return the face gears of the machine, as `geometry.flank_errors` names them: one alone is the upper.
+    """Return the names of the machine's face gears, upper and lower; a single one is the upper.
 
     Parameters
     ----------

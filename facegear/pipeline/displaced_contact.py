@@ -131,7 +131,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row for each flank; `DisplacedContactResult.table` describes the columns.
+        A row for each flank; `DisplacedContact.table` describes the columns.
     """
     return pd.DataFrame(
         [

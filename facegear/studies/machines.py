@@ -49,7 +49,7 @@ from facegear.studies.varied_bodies import VariedBodies
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """Function that returns the quantities of a machine by column, given values of
-`config.changes.variable_part`.
+`facegear.schema.changes.variable_part`.
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged.
 """

@@ -123,7 +123,7 @@ class PinionGeometry:
 @dataclass(frozen=True)
 class GearModifications:
     """Modifications that take material off both flanks of the face gear along the normal; see
-    `gear_modifications`.
+    `facegear.teeth.modifications`.
 
     lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m)
     at the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip,

@@ -278,8 +278,8 @@ def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute points of the fillet, see `face_gear.fillet_section`, less the material taken off at the end of
-    the flank.
+    """Compute points of the fillet, see `face_gear_fillet.fillet_section`, less the material taken off at the
+    end of the flank.
 
     Parameters
     ----------

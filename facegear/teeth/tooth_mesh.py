@@ -30,7 +30,7 @@ class SurfaceGrid:
 
 @dataclass(frozen=True)
 class FeTooth:
-    """Tooth 0 with its share of the body, from cut face to cut face, in the body frame of `geometry.design`.
+    """Tooth 0 with its share of the body, from cut face to cut face, in the frame of `facegear.teeth.design`.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class FeTooth:
         points : (..., 3) array
             m, or any unit.
         angle : float
-            rad, positive as in `geometry.design`.
+            rad, positive as in `facegear.teeth.design`.
 
         Returns
         -------

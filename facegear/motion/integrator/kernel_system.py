@@ -86,7 +86,7 @@ def system_numbers(system: System) -> dict[str, Any]:
     Returns
     -------
     dict
-        Arrays, numbers and flags in SI units; what `motion.system` takes.
+        Arrays, numbers and flags in SI units; what `_kernels.motion.system` takes.
     """
     n, rubbing = system.size, system.rubbing
     return {

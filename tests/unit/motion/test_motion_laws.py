@@ -95,22 +95,93 @@ def with_twin(tmp_path_factory):
 @pytest.mark.skipif(shutil.which("c++") is None, reason="the recipe's law is compiled by a C++ compiler")
 @pytest.mark.parametrize("file", ["motion.cpp", "motion_twin.cpp"])
 def test_a_law_that_follows_the_recipe_compiles_and_changes_no_other_file(with_twin, file):
-    places = [with_twin, nanobind.include_dir(), sysconfig.get_path("include")]
-    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-psabi"]
-    include = [word for place in places for word in ("-isystem" if place != with_twin else "-I", str(place))]
-    done = subprocess.run(
-        [*command, *include, str(with_twin / "bindings" / file)], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr[:2000]
-    changed = {
-        str(path.relative_to(with_twin)) for path in with_twin.rglob("*.?pp") if differs(path, with_twin)
-    }
-    assert changed == {
+    assert compiler_messages(with_twin, file) == ""
+    assert changed_files(with_twin) == {
         "motion/laws/twin.hpp",
         "motion/laws/all.hpp",
         "bindings/motion.cpp",
         "bindings/motion_twin.cpp",
     }
+
+
+@pytest.fixture(scope="module")
+def with_state(tmp_path_factory):
+    """Return copied sources to which a contact state was added by the recipe: that of parting, as a twin."""
+    sources = tmp_path_factory.mktemp("state") / "src"
+    shutil.copytree(SOURCES, sources)
+
+    def rename(text):
+        return (
+            text.replace("parting", "muted")
+            .replace("push_only", "muted")
+            .replace("look_at_force", "look_at_muted")
+        )
+
+    def add_twin(file, *patterns):
+        """Repeat each part of a file that a pattern finds, with the names of the new state."""
+        text = (sources / file).read_text()
+        for pattern in patterns:
+            part = re.search(pattern, text, re.M | re.S)[0]
+            text = text.replace(part, part + rename(part), 1)
+        (sources / file).write_text(text)
+
+    add_twin("motion/work.hpp", "&parting, ", ", parting(?=;)")
+    add_twin("motion/contact_states.hpp", r"^ *w\.parting\.put.*?\n")
+    parting = (sources / "motion" / "parting.hpp").read_text()
+    found = [
+        re.search(rf"^template[^\n]*\n\w+ {name}_parting\(.*?^}}\n", parting, re.M | re.S)[0]
+        for name in ("find", "correct")
+    ]
+    code = "\n".join(
+        ['#pragma once\n#include "motion/parting.hpp"\nnamespace facegear::motion {', *found, "}\n"]
+    )
+    (sources / "motion" / "muted.hpp").write_text(rename(code))
+    add_twin(
+        "motion/advance.hpp",
+        r'^#include "motion/parting.hpp"\n',
+        r"^ *if [^\n]*find_parting.*?\n",
+        r"^ *if [^\n]*correct_parting.*?\n",
+    )
+    add_twin(
+        "motion/switches.hpp",
+        r"^template[^\n]*\nvoid look_at_force.*?^}\n",
+        r"^ *if [^\n]*look_at_force.*?\n",
+    )
+    add_twin("motion/system.hpp", ", push_only = false")
+    add_twin(
+        "bindings/motion.cpp",
+        "bool push_only, ",
+        r"^ *s->push_only.*?\n",
+        r"made_for.push_only == other.push_only &&",
+        '"push_only"_a, ',
+    )
+    return sources
+
+
+@pytest.mark.skipif(shutil.which("c++") is None, reason="the recipe's state is compiled by a C++ compiler")
+@pytest.mark.parametrize("file", ["motion.cpp", "motion_power.cpp"])
+def test_a_contact_state_that_follows_the_recipe_compiles_and_changes_no_other_file(with_state, file):
+    assert compiler_messages(with_state, file) == ""
+    named = re.findall(r"`facegear/_kernels/src/([\w/<>]+\.[hc]pp)`", recipe("Add a contact state"))
+    expected = {name.replace("<state>", "muted") for name in named} - {"motion/parting.hpp"}
+    assert changed_files(with_state) == expected
+
+
+def compiler_messages(sources, file):
+    """Return what the compiler says of a file of the bindings."""
+    places = [sources, nanobind.include_dir(), sysconfig.get_path("include")]
+    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-psabi"]
+    include = [word for place in places for word in ("-isystem" if place != sources else "-I", str(place))]
+    done = subprocess.run(
+        [*command, *include, str(sources / "bindings" / file)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode == 0) == (not done.stderr)
+    return done.stderr[:2000]
+
+
+def changed_files(sources):
+    """Return the files of copied sources that are not those of the repository."""
+    return {str(path.relative_to(sources)) for path in sources.rglob("*.?pp") if differs(path, sources)}
 
 
 def differs(path, sources):
