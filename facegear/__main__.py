@@ -17,7 +17,7 @@ from facegear.build.early_checks import limits_in_words
 from facegear.build.load import load_config, read_layers
 from facegear.checking import check_config
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
-from facegear.exchange.rexs import RexsPinions, known_of_rexs
+from facegear.exchange.rexs_pinions import RexsPinions, known_of_rexs
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.new_machine.first_machine import first_machine
 from facegear.new_machine.wishes import MachineWishes

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as Xml
 
 from facegear.build.config import Config
@@ -18,6 +17,8 @@ from facegear.machine.layout import Body
 
 VERSION = "2.0"
 """Version of the REXS standard that files are written in."""
+
+
 LOST_CONTENT = (
     "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
     "distribution angles, torques with their excitations, backlash, errors and damping",
@@ -26,6 +27,7 @@ LOST_CONTENT = (
     "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",
 )
 """Content of a machine that a file cannot hold."""
+
 
 READ_UNITS = {
     "mass_of_component": "kg",
@@ -244,6 +246,8 @@ def _unit(root: Xml.Element) -> Unit:
 
 
 Parts = dict[str, Xml.Element]
+
+
 Relations = list[tuple[str, dict[str, str]]]
 
 
@@ -347,10 +351,6 @@ def _value(part: Xml.Element | None, key: str) -> float | None:
     return value
 
 
-RIGID = 1e12
-"""Stiffness of a bearing, N/m, from which it counts as rigid: ten thousand times that of a mesh."""
-
-
 def gear_unit(config: Config) -> Unit:
     """Return pinions and face gears as shafts on their bearings.
 
@@ -397,69 +397,3 @@ def _gear(name: str, body: Body) -> Shaft:
     """Return a face gear as a shaft of its name, mass and bearing."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z)
-
-
-@dataclass(frozen=True)
-class RexsPinions:
-    """The equal pinions of a REXS file.
-
-    Attributes
-    ----------
-    values : dict
-        By the fields of `facegear.new_machine.wishes.MachineWishes`; only what the file gives.
-    notes : tuple of str
-        What was changed on the way, a line each.
-    """
-
-    values: dict[str, Any]
-    notes: tuple[str, ...]
-
-
-def known_of_rexs(path: str | Path) -> RexsPinions:
-    """Return the values that a REXS file has for a starting config.
-
-    These are the pinions with their bearings and bodies. The file has no face gears, roles, torques and
-    speeds.
-
-    Parameters
-    ----------
-    path : str or Path
-        The REXS file.
-
-    Returns
-    -------
-    RexsPinions
-        Values of the equal pinions, and notes.
-
-    Raises
-    ------
-    FacegearError
-        For a file without cylindrical gears, or with several kinds of them.
-    """
-    shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
-    spurs = {shaft.spur for shaft in shafts if shaft.spur is not None}
-    if len(spurs) != 1:
-        sizes = sorted((spur.teeth, spur.module) for spur in spurs)
-        descriptions = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
-        raise FacegearError(f"{path}: cylindrical gears = {descriptions}: must be equal pinions")
-    (spur,) = spurs
-    first = shafts[0]
-    file_values = {
-        "pinions": len(shafts),
-        "pinion_teeth": spur.teeth,
-        "module_mm": spur.module,
-        "pressure_angle_deg": spur.pressure_angle,
-        "pinion_width_mm": spur.width,
-        "pinion_bore_radius_mm": spur.bore,
-        "pinion_mass_kg": first.mass,
-        "input_bearing_n_per_m": first.radial,
-        "idler_bearing_n_per_m": first.radial,
-        "axial_bearing_n_per_m": first.axial,
-    }
-    values = {name: value for name, value in file_values.items() if value is not None}
-    notes = []
-    for name in [name for name in values if name.endswith("_n_per_m") and values[name] >= RIGID]:
-        if name != "idler_bearing_n_per_m":
-            notes.append(f"{path}: {name} = {values[name]:g}: taken as rigid, {RIGID:g} N/m")
-        values[name] = RIGID
-    return RexsPinions(values, tuple(notes))

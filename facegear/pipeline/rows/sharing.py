@@ -183,7 +183,7 @@ ROWS = (
             "reasons": File("load_sharing/sharing_map_reasons.csv", (), may_be_empty=True, text=("reason",)),
         },
         figures=Figures(
-            draw="facegear.report.figures.sharing:sharing_map_figures",
+            draw="facegear.report.figures.sharing_map:sharing_map_figures",
             names=("sharing_map",),
             chapter="load_sharing",
             upstream=from_stage("sharing_map", "curves", "inputs", "points"),
