@@ -20,8 +20,10 @@ POSES = {"poses": From("pose_surface", "surface", when=asked.poses)}
 MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
-BODIES = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
-"""Face gears that bend."""
+BODIES = {
+    "bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears),
+}
+"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend."""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=asked.single_teeth)}
 """Teeth that deviate from the others."""
 MOTION_INPUTS = {
