@@ -161,9 +161,14 @@ class Machine:
     @cached_property
     def linear(self) -> LinearModel:
         """Masses, bearings, loads and the directions of the contacts."""
-        with_shafts = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
-        whole = with_shafts if self.bodies is None else self.bodies(with_shafts)
-        return whole if self.directions is None else self.directions(whole)
+        model = self.lumped_model
+        for add_part in (
+            self.drive_line,
+            self.bodies,
+            self.directions,
+        ):
+            model = model if add_part is None else add_part(model)
+        return model
 
     @cached_property
     def lumped_model(self) -> LinearModel:

@@ -49,7 +49,7 @@ COMPILED = {path.stem for path in (ROOT / "facegear/_kernels/src/bindings").glob
 """Modules of the kernels, which are made by the build."""
 OF_WORKFLOW = {"facegear.yaml", "facegear.lock"}
 """Files of a user's project."""
-VARIABLES = {"facegear", "_kernels", "gearbox", "study", "sys", "tool", "module"}
+VARIABLES = {"facegear", "_kernels", "modelDescription", "gearbox", "study", "sys", "tool", "module"}
 """Words that name compiled modules, objects of a reader's script, tables, or what another test checks."""
 FILE_ENDS = {
     *(

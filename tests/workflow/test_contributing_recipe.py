@@ -1,18 +1,12 @@
 """The recipe for a new stage in CONTRIBUTING.md is followed step by step, in a copy of the sources."""
 
-import os
-import re
-import subprocess
-import sys
-
 import pytest
-from projects import ROOT, Project, copy_sources, environment
+from projects import ROOT, Project, copy_sources
+from recipes import assert_test_passes, python, read_recipe
 
 from validation.references import INDEPENDENT, declarations
 
-TEXT = (ROOT / "CONTRIBUTING.md").read_text()
-SECTION = re.search(r"^## Add a stage\n(.*?)^## ", TEXT, flags=re.DOTALL | re.MULTILINE)[1]
-STEPS = re.findall(r"^\d+\. `([^`]+)`([^\n]*)\n((?:   .*\n|\n)*)", SECTION, flags=re.MULTILINE)
+STEPS = read_recipe("Add a stage")
 MOST = 8
 """Files that a stage with a figure, an answer of the door and a test may touch."""
 CONFIG = str(ROOT / "config" / "harmonics_only.yaml")
@@ -29,44 +23,13 @@ assert [path.name for path in found.save({saved!r})] == ["gear_ratio.csv"]
 def followed(tmp_path_factory):
     """A copy of the sources in which every step was done."""
     sources = copy_sources(tmp_path_factory.mktemp("recipe"))
-    for name, where, text in STEPS:
-        block = re.search(r"```\w+\n(.*?)   ```", text, flags=re.DOTALL)
-        if block:
-            write(sources / name, where, without_list(block[1]))
+    for step in STEPS:
+        step.follow(sources)
     return sources
 
 
-def without_list(text):
-    """The code less the three columns by which the list indents it."""
-    return "".join(line.removeprefix("   ") for line in text.splitlines(keepends=True))
-
-
-def write(path, where, code):
-    place = re.match(r", (below|above) `([^`]+)`", where)
-    if place is None:
-        assert where.startswith(", new") and not path.exists()
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(code)
-        return
-    line = f"{place[2]}\n"
-    before, after = path.read_text().split(line)
-    both = (line, code) if place[1] == "below" else (code, line)
-    path.write_text(before + "".join(both) + after)
-
-
-def python(sources, *arguments, folder=None):
-    return subprocess.run(
-        [sys.executable, *arguments],
-        cwd=folder or sources,
-        env={**environment(), "PYTHONPATH": os.pathsep.join([str(sources), str(ROOT / "tests" / "helpers")])},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_a_new_stage_touches_at_most_eight_files():
-    assert 4 <= len({name for name, _, _ in STEPS}) <= MOST
+    assert 4 <= len({step.file for step in STEPS}) <= MOST
 
 
 def test_the_recipe_makes_a_stage_that_runs_draws_and_answers(followed, tmp_path):
@@ -83,11 +46,7 @@ def test_the_recipe_makes_a_stage_that_runs_draws_and_answers(followed, tmp_path
 
 
 def test_the_test_of_the_recipe_passes_and_its_code_is_formatted(followed):
-    names = [name for name, where, _ in STEPS if where.startswith(", new")]
-    tested = ("pytest", "-q", "-p", "references", "-p", "no:cacheprovider", "-c", "/dev/null", names[-1])
-    for command in (tested, ("ruff", "check", "--config", str(ROOT / "pyproject.toml"), *names)):
-        done = python(followed, "-m", *command)
-        assert done.returncode == 0, done.stdout + done.stderr
+    assert_test_passes(followed, STEPS)
 
 
 def test_the_recipe_gives_the_new_stage_an_independent_reference(followed):

@@ -30,7 +30,7 @@ MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
 BODIES = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
-"""Face gears that bend."""
+"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend."""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=conditions.single_teeth)}
 """Teeth that deviate from the others."""
 MOTION_INPUTS = {
