@@ -30,7 +30,9 @@ TILTS = ("tilt", "hub_tilt", "body")
 
 
 def always(case: Case) -> bool:
-    """Return True: the condition of a stage that every case needs.
+    """Always.
+
+    The condition of a stage that every case needs; its first line stands in the table of stages.
 
     Parameters
     ----------

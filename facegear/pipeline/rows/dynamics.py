@@ -157,4 +157,4 @@ ROWS = (
         local=True,
     ),
 )
-"""Stages on stiffness over the load, response, sweep and modes."""
+"""Stages on response, sweep, orders of the turns and the loads of mesh laws."""

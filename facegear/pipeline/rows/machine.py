@@ -170,4 +170,4 @@ ROWS = (
         local=True,
     ),
 )
-"""Stages on bodies, poses, ratings, shafts and modes of the machine."""
+"""Stages on gears that bend, ratings, shafts, operating pose and modes."""

@@ -105,7 +105,7 @@ LOAD_ROWS = (
         },
     ),
 )
-"""Stages on root stress and loads of the duty cycle."""
+"""Stages on root stress, also at the operating pose, and loads of the duty cycle."""
 
 ROWS = (
     Stage(

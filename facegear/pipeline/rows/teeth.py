@@ -252,4 +252,4 @@ ROWS = (
         local=True,
     ),
 )
-"""Stages on geometry, compliance, contact and stiffness."""
+"""Stages on geometry, meshes, compliance, contact, stiffness and pose surface."""
