@@ -4,3 +4,4 @@ from typing import Literal
 
 Body = Literal["pinion", "face_gear"]
 BODIES: tuple[Body, ...] = ("pinion", "face_gear")
+"""Names of the bodies of a pair, pinion first."""

@@ -48,6 +48,7 @@ class Progress:
         )
 
     def _left(self, now: float, first: tuple[float, int]) -> float:
+        """Return the time left, s, smoothed against the estimate printed last."""
         left = (now - first[0]) / (self.steps_done - first[1]) * (self.total - self.steps_done)
         if self.estimate is not None:
             then, estimate = self.estimate

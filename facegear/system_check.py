@@ -72,11 +72,13 @@ def main() -> int:
 
 
 def _complain(line: str) -> int:
+    """Print a line to standard error and return exit code 1."""
     print(line, file=sys.stderr)
     return 1
 
 
 def _loads(library: str) -> bool:
+    """Whether a shared library can be loaded."""
     name = ctypes.util.find_library(library)
     if name is None:
         return False

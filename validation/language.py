@@ -38,6 +38,8 @@ UNIT = re.compile(
 NUMERIC = re.compile(r"\b(float|complex|Array|ComplexArray)\b")
 ARRAY = re.compile(r"\b(Array|ComplexArray|Integers|Mask|AnyArray)\b")
 SHAPE = re.compile(r"\([^()]*\)")
+CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]+")
+COMMENT = re.compile(r"(?m)(^|  )# ")
 UNCHECKED_ARGUMENTS = frozenset(("self", "cls"))
 
 PUBLIC_NAMES = {
@@ -96,6 +98,8 @@ def offenders_of(path: Path, source: str) -> set[str]:
         offenders |= {(name, "name") for name in defined_names(tree) if is_bare(name.rpartition(".")[2])}
         if is_bare(path.stem):
             offenders.add(("<module>", "name"))
+        if path.parts[0] == "facegear":
+            offenders |= {(name, "constant") for name in unexplained_constants(tree, source)}
         if "scripts" not in path.parts:
             for name, function in public_functions(tree):
                 offenders |= {(name, rule) for rule in broken_sections(function)}
@@ -152,6 +156,36 @@ def _docstrings_below(node: ast.AST, prefix: str) -> Iterator[tuple[str, str]]:
         yield from _docstrings_below(
             child, f"{prefix}{child.name}." if isinstance(child, Definition) else prefix
         )
+
+
+def unexplained_constants(tree: ast.Module, source: str) -> Iterator[str]:
+    """Yield the constants of a module that have neither a docstring nor a comment.
+
+    What a docstring should say, a program cannot check: meaning, unit, and the reason for a free number.
+
+    Parameters
+    ----------
+    tree
+        The module.
+    source
+        Its text.
+
+    Yields
+    ------
+    str
+        Name, in upper case, of each constant; of several that are assigned together, all.
+    """
+    lines = source.splitlines()
+    for statement, after in zip(tree.body, [*tree.body[1:], ast.Pass()], strict=True):
+        match statement:
+            case ast.Assign(targets=[target, *_]) | ast.AnnAssign(target=target, value=ast.expr()):
+                names = [node.id for node in ast.walk(target) if isinstance(node, ast.Name)]
+            case _:
+                continue
+        has_docstring = isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
+        text = "\n".join(lines[max(statement.lineno - 2, 0) : statement.end_lineno])
+        if not has_docstring and not COMMENT.search(text):
+            yield from (name for name in names if CONSTANT.fullmatch(name))
 
 
 def defined_names(tree: ast.Module) -> Iterator[str]:

@@ -346,12 +346,15 @@ def _pinion_body(pair: ToothPair) -> tuple[float, float]:
 
 
 LINES = "flanks that touch along lines meet any pose with an edge"
+"""Reason of a refusal: contact along lines cannot follow poses."""
 STATIC = "where transmission.operating_pose is static"
+"""Condition of a refusal, in words."""
 OTHER_SURFACE = (
     f"a key of transmission, dynamics or lubrication {STATIC}: a pair that differs is another surface"
 )
 """Requirement on keys that samples and designs may change beside an operating pose."""
 REST = "the contact of samples and designs is that of the pair as assembled"
+"""Reason of a refusal: varied machines have no contact in the loaded position."""
 
 
 def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness) -> None:

@@ -261,6 +261,7 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
 
 
 def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
+    """Say in one line where the teeth interfere and what then cannot be computed."""
     gap = analysis.interference
     assert gap is not None
     consequence = (
@@ -274,7 +275,9 @@ def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
 
 
 def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
-    """Why the pair cannot be rated, and where the rating leaves the range of its standard."""
+    """Return why the pair cannot be rated, and where the rating leaves the range of its standard,
+    as lines.
+    """
     if values["strength"] is None:
         return [], []
     ratio = section_contact_ratio(design)
@@ -306,7 +309,7 @@ def _stiffness(values: Mapping[str, Any]) -> float:
 
 
 def _unsolved(values: Mapping[str, Any], loads: Mapping[str, float]) -> Iterator[str]:
-    """Loads of meshes at rest, N m, that lie outside the torques of the contact analysis."""
+    """Yield lines on meshes whose load at rest, N m, lies outside the torques of the contact analysis."""
     if not loads:
         return
     low, high = values["contact"]["torques_n_m"][0], values["contact"]["torques_n_m"][-1]

@@ -69,7 +69,7 @@ class Candidates:
         return self._load_cache[side, is_refined]
 
     def only(self, keep: Mask) -> "Candidates":
-        """Return some of the loads.
+        """Return the candidates that a mask marks.
 
         Parameters
         ----------

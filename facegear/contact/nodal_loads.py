@@ -101,6 +101,7 @@ def loads_by_tooth(
 
 
 REACTION_COLUMNS = ("torque_n_m", "tangential_n", "axial_n", "overturning_n_m")
+"""Columns of the table of contact reactions on the pinion; units stand in the names."""
 
 
 def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:
@@ -127,6 +128,7 @@ def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]
 
 
 def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
+    """Return tangential force, axial force and overturning moment (3,), N and N m, of all loads."""
     parts = [_of_spot(surface, result.position, spot) for spot in result.spots]
     return np.sum(parts, axis=0) if parts else np.zeros(3)
 

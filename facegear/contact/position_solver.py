@@ -94,7 +94,7 @@ class ContactSolution:
 
     @property
     def active(self) -> Mask:
-        """Points in contact (n,)."""
+        """Mask of the points in contact (n,), those with a force."""
         return self.force > 0.0
 
 

@@ -29,6 +29,7 @@ from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.surfaces import flank_points
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
+"""Index in EDGES of the place where a plane carries its load."""
 
 KERNEL = np.array([1.0, 2.0, 1.0]) / 4
 """Weights of neighbouring planes, over an element of the face: forces alternate between its nodes."""
@@ -202,7 +203,7 @@ def flank_pressure(
 
 
 def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
-    """Number of each line by position and tooth."""
+    """Number the contact lines by position and tooth."""
     return {pair: row for row, pair in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
 
 
@@ -341,6 +342,7 @@ def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
 
 
 def _nearest_edge(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
+    """Return for each plane the edge of the flank that its contact reaches, an index of EDGES."""
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )

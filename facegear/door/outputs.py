@@ -172,6 +172,7 @@ def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None
 
 
 def _scene(self: Case, path: Path) -> Path:
+    """Write all gears as a glTF scene; without a machine one pinion and one gear."""
     from facegear.exchange.gltf import write_gltf  # a library of the extra `exchange`
 
     design, machine = pair_design(self.config.tooth_pair), self.config.transmission
@@ -188,6 +189,7 @@ def _scene(self: Case, path: Path) -> Path:
 
 
 def _gear_unit(self: Case, path: Path) -> Path:
+    """Write shafts, pinions, bearings and materials as REXS."""
     date = datetime.now(UTC).isoformat(timespec="seconds")
     return write_rexs(path, gear_unit(self.config), date, version("facegear"))
 

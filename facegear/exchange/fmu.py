@@ -28,10 +28,13 @@ SLOWEST_RPM = 1.0
 KERNELS = "facegear._kernels", "src"
 """Package and folder of the sources of the motion."""
 INCLUDES = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+"""Header that a C++ source includes by its path below the kernels' sources."""
 IDENTIFIER = "facegear_machine"
+"""Name of the FMU's library, as FMI asks for one."""
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"}}
 """Units by their exponents of base units; rpm has a factor."""
 LETTERS = "xyz"
+"""Directions of the forces on bearings."""
 COUPLING = ("dampers", "gyroscopic", "circulatory", "centrifugal")
 """Matrices that couple coordinates, in the order of the integrator's argument."""
 SERIES = ("error", "load", "rubbing_ratios", "fourier", "factor")
@@ -248,12 +251,13 @@ def _header(model: Model, speed_rpm: float) -> str:
 
 
 def _function(name: str, values: AnyArray) -> str:
+    """Return a C++ function that returns an array as a vector."""
     kind = "Index" if values.dtype.kind == "i" else "double"
     return f"inline std::vector<{kind}> {name}() {{ return {_list(values)}; }}"
 
 
 def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill facegear::motion::System."""
+    """Yield C++ statements that fill facegear::motion::System with the numbers of the machine."""
     rows, n = numbers["jacobian"].shape
     contacts = rows - 3 * numbers["ring_stiffness"].size
     yield f"s.n = {n}, s.m = {rows}, s.contacts = {contacts};"
@@ -267,7 +271,7 @@ def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill one of the laws of facegear::motion."""
+    """Yield C++ statements that fill one of the force laws of facegear::motion."""
     for name, values in numbers.items():
         if name == "table":
             kinds, levels, harmonics = values.shape[:3]
@@ -279,19 +283,24 @@ def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _series(values: AnyArray) -> str:
-    """Fourier series (kinds, 2, harmonics + 1) as facegear::motion::FourierRows."""
+    """Return Fourier series (kinds, 2, harmonics + 1) as C++ text that initialises
+    facegear::motion::FourierRows.
+    """
     return f"{{{values.shape[0]}, {values.shape[2]}, {_list(values)}}}"
 
 
 def _value(value: Any) -> str:
+    """Return an array or a number as C++ text."""
     return _list(value) if isinstance(value, np.ndarray) else _text_of(value)
 
 
 def _list(values: AnyArray) -> str:
+    """Return an array as a C++ initialiser list, in row-major order."""
     return "{" + ", ".join(_text_of(value) for value in values.ravel().tolist()) + "}"
 
 
 def _text_of(value: float | bool) -> str:
+    """Return a number or a boolean as C++ text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value).replace("inf", "infinity")
@@ -303,6 +312,7 @@ def _mesh_period(machine: Machine, speed_rpm: float) -> float:
 
 
 def _description(variables: Sequence[Variable], mesh_period: float, token: str) -> str:
+    """Return `modelDescription.xml`: variables, units, default experiment and structure."""
     root = Xml.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -350,6 +360,7 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
 
 
 def _build_description() -> str:
+    """Return `buildDescription.xml`: how the sources of the FMU are compiled."""
     root = Xml.Element("fmiBuildDescription", fmiVersion="3.0")
     build = Xml.SubElement(root, "BuildConfiguration", modelIdentifier=IDENTIFIER)
     sources = Xml.SubElement(build, "SourceFileSet", language="C++17")
@@ -359,5 +370,6 @@ def _build_description() -> str:
 
 
 def _text(root: Xml.Element) -> str:
+    """Return an XML tree as indented text with its declaration."""
     Xml.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="unicode") + "\n"

@@ -18,6 +18,7 @@ from facegear.teeth.solids import solid, triangles
 PROFILE, WIDTH = 9, 5
 """Points of every patch along the profile and the width."""
 COLOURS: dict[Body, tuple[int, ...]] = {"pinion": (208, 140, 60, 255), "face_gear": (110, 130, 150, 255)}
+"""Colour (red, green, blue, opacity; 0 to 255) of each body."""
 UPWARDS = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 """From our frame, whose z is the gears' axis, to that of glTF, whose y points upwards."""
 

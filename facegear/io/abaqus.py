@@ -10,7 +10,9 @@ from facegear.arrays import Array, Integers
 from facegear.io.atomic import atomic_path
 
 NODE = "%d, %.12e, %.12e, %.12e\n"
+"""Format of a node's line: label and coordinates, m; 13 digits, as CalculiX reads at most 20 characters."""
 ELEMENT = f"{', '.join(['%d'] * 11)},\n{', '.join(['%d'] * 10)}\n"
+"""Format of the two lines of a C3D20 element: its label and 20 nodes."""
 
 
 def write(
@@ -61,5 +63,6 @@ def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
 
 
 def _list(stream: TextIO, labels: Integers) -> None:
+    """Write labels in lines of twelve."""
     for start in range(0, len(labels), 12):
         stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

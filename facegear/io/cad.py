@@ -21,6 +21,7 @@ with extras_named():
     import meshio
 
 DEGREE = 3
+"""Degree of the B-spline surfaces: cubic, so that curvature is continuous."""
 NANOMETRES = 6
 """Decimals of a coordinate in mm that a triangle's corners are rounded to, so that equal ones are equal."""
 PRODUCT = re.compile(r"\bPRODUCT\(\s*'(?:[^']|'')*'\s*,\s*'(?:[^']|'')*'")

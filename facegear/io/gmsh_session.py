@@ -10,7 +10,9 @@ with extras_named():
     import gmsh
 
 VARIABLE = "PETSC_OPTIONS"
+"""Environment variable that PETSc reads its options from."""
 NO_HANDLERS = "-no_signal_handler"
+"""Option by which PETSc leaves signals alone."""
 
 
 @contextmanager

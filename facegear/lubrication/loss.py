@@ -124,7 +124,7 @@ class OverTorque:
     values: Array
 
     def at(self, torque: Numbers) -> Array:
-        """Interpolate the quantity.
+        """Interpolate the quantity, which is known at some torques, at other torques.
 
         Parameters
         ----------

@@ -29,7 +29,7 @@ class PrintedKinematics:
     follows_rotation: bool = False
 
     def require(self, layout: Layout) -> None:
-        """Accept any radii.
+        """Accept any radii, as the printed equation does.
 
         Parameters
         ----------

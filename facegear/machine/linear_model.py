@@ -108,7 +108,7 @@ class LinearModel:
 
     @property
     def loads(self) -> Array:
-        """Torques and forces (n,)."""
+        """Constant generalised loads (n,): torques, N m, and forces, N."""
         return self.torques + self.forces
 
     @property
@@ -136,7 +136,7 @@ class LinearModel:
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: AnyArray) -> AnyArray:
-        """Return M times vectors.
+        """Multiply vectors by the mass matrix M.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ class LinearModel:
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Return which coordinates belong to a body.
+        """Return the indices of the coordinates that belong to a body.
 
         Parameters
         ----------
@@ -287,6 +287,7 @@ def flank_jacobian(layout: Layout) -> Array:
 
 
 def _tilts(layout: Layout) -> list[Tilt]:
+    """Return the tilts of the gears that may tilt."""
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
 
 
@@ -352,6 +353,7 @@ def _alone(layout: Layout) -> LinearModel:
 
 
 def _rings(layout: Layout, clearance: Array) -> Rings:
+    """Return the bearings with clearance: body, radial stiffness, N/m, and clearance, m."""
     body = np.flatnonzero(clearance > 0.0)
     return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
 

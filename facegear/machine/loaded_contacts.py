@@ -104,6 +104,7 @@ class LoadedContacts:
         return Contact.UNCERTAIN in [*self.flank_states(), *self.ring_states()]
 
     def _state(self, force: float) -> Contact:
+        """Return whether a flank with a force, N, is open, in contact, or too near to tell."""
         largest = self.flanks.max()
         if force <= OPEN_SHARE * largest:
             return Contact.OPEN

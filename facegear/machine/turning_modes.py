@@ -177,7 +177,7 @@ def wave_parts(
 
 
 def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
-    """Elastic coordinates of a gear by nodal diameters."""
+    """Return the indices of a gear's elastic coordinates by number of nodal diameters."""
     members: dict[int, list[int]] = {}
     for number, label in enumerate(linear.labels):
         owner, _, letter = label.rpartition(":")
@@ -187,8 +187,10 @@ def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
 
 
 def _forward(linear: LinearModel, shapes: ComplexArray, members: list[int], sign: float) -> Array:
-    """With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
-    the other |a - i b| / 2.
+    """Return the part of each shape's squared amplitude that lies in the wave turning with the gear.
+
+    With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
+    the other |a - i b| / 2. `sign`: sense in which the gear turns.
     """
     cosine = [number for number in members if linear.labels[number].endswith("c")]
     sine = [number for number in members if linear.labels[number].endswith("s")]

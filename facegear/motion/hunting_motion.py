@@ -149,7 +149,9 @@ def slow_polynomials(model: Model, cycles: Integers) -> Array:
 def _run(
     model: Model, integrator: Integrator, state: Array, cycles: Integers, positions: int
 ) -> tuple[Array, Array]:
-    """Samples (cycles * positions, n) of the coordinates from a state (2, n), and the state at the end."""
+    """Integrate mesh cycles from a state (2, n); return samples (cycles * positions, n) and the
+    last state.
+    """
     samples = np.zeros((cycles.size, positions, integrator.size))
     for cycle_samples, drift in zip(samples, slow_polynomials(model, cycles), strict=True):
         result = integrator.run(state, 1, samples=positions, drift=drift)
@@ -158,6 +160,7 @@ def _run(
 
 
 def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions: int) -> Array:
+    """Return the forces of all flanks, N, from reduced coordinates over mesh cycles."""
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stack_series(error_series(machine)), at) + slow_errors(machine, at)
@@ -166,6 +169,7 @@ def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions:
 
 
 def _instants(cycles: Integers, positions: int) -> Array:
+    """Return the instants of mesh cycles, in cycles."""
     return (cycles[:, None] + np.arange(positions) / positions).ravel()
 
 

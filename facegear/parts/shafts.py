@@ -320,4 +320,5 @@ def _flat(blocks: Array) -> Array:
 
 
 def _symmetric(matrix: AnyArray) -> Array:
+    """Return the symmetric part of a matrix, which removes rounding."""
     return np.asarray(0.5 * (matrix + matrix.T))

@@ -33,6 +33,7 @@ from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.tooth_mesh import FeTooth, gear_tooth
 
 SAME_HEIGHT = 1e-9
+"""Difference of two heights, m, up to which they are equal: rounding of coordinates of 0.1 m."""
 
 
 def rim_below(section: Section) -> float:
@@ -72,7 +73,9 @@ def rim_below(section: Section) -> float:
 SIZES = (0.5, 1.6, 0.9)
 """Profile, width and thickness of the elements in modules."""
 ELEMENTS_AT_ONCE = 64
+"""Number of elements integrated together, which bounds memory; results do not depend on it."""
 DEGREE = 5
+"""Polynomial degree up to which integrals over elements are exact; products of quadratic shapes need 4."""
 
 
 def tooth_energies(
@@ -231,6 +234,7 @@ ORDER = 4
 ELEMENTS = (6, 4, 4)
 """Number of elements for the layer's energies: along the radius, through the rim and through the layer."""
 FIT_TOLERANCE = 1e-8
+"""Relative error up to which the layer's energies equal those of the teeth; far below the model's error."""
 
 
 def fitted_teeth(section: Section, design: PairDesign) -> Section:

@@ -52,7 +52,7 @@ class Rim:
 
 
 def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
-    """Return the corners of hub, web and rim.
+    """Return the corners of a gear's section that consists of hub, web and rim.
 
     Parameters
     ----------
@@ -206,7 +206,8 @@ class Patch:
         return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
-        """Return W_p and V_p from the means below the teeth.
+        """Return the axial and circumferential displacement at a mesh from the means of the rim below the
+        teeth.
 
         Parameters
         ----------

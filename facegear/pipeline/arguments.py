@@ -381,4 +381,5 @@ def pair_where(has_contact: Callable[[Case], bool]) -> Callable[[Case], dict[str
 
 
 def _causes(section: Mapping[str, Any] | None) -> list[str]:
+    """Return the config keys that the causes of section tolerances move."""
     return [key for cause in (section or {}).get("causes", ()) for key in cause["moves"]]

@@ -10,6 +10,7 @@ from facegear.pipeline.stage import Case
 from facegear.schema.contact import modes_need_contact
 
 BODIES = ("pinion", "face_gear")
+"""Names of the bodies of a pair, pinion first."""
 CONTACT = ("tooth_pair", "mesh", "contact")
 """Sections of the config that a contact analysis takes."""
 PAIR_SECTIONS = (*CONTACT, "mesh_stiffness")
@@ -29,7 +30,7 @@ TILTS = ("tilt", "hub_tilt", "body")
 
 
 def always(case: Case) -> bool:
-    """Always.
+    """Return True: the condition of a stage that every case needs.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def contact(case: Case) -> bool:
 
 
 def computed_stiffness(case: Case) -> bool:
-    """Whether k(t) follows from the contact.
+    """Whether the mesh stiffness k(t) is computed from contact, not given by the config.
 
     Parameters
     ----------
@@ -226,7 +227,7 @@ def modes_from_contact(case: Case) -> bool:
 
 
 def root_stress(case: Case) -> bool:
-    """Whether `contact.root_stress` asks for it.
+    """Whether the config asks for root stress by `contact.root_stress`.
 
     Parameters
     ----------

@@ -22,6 +22,7 @@ from facegear.schema.contact import Contact
 from facegear.schema.transmission import Transmission
 
 SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")
+"""Keys of a body's displacements: along the axes, µm, and about them, deg."""
 LARGEST_SHIFT, LARGEST_TURN = 5000.0, 2.0
 """Largest shift (um) and turn (deg) of a body: the bounds of assembly errors in a config."""
 

@@ -188,7 +188,7 @@ def branches(case: Case) -> bool:
 
 
 def shares_load(case: Case) -> bool:
-    """Whether the machine splits a load among some of its meshes.
+    """Whether the machine splits one load among several meshes, so that load sharing has a meaning.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def shares_load(case: Case) -> bool:
 
 
 def has_groups_of_pinions(case: Case) -> bool:
-    """Whether several pinions do the same.
+    """Whether several pinions of the machine have the same function, so that load sharing can be studied.
 
     Parameters
     ----------

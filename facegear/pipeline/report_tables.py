@@ -203,32 +203,38 @@ def estimated_seconds(case: Case, stages: Sequence[Stage]) -> float:
 
 
 def _compliance(case: Case) -> float:
+    """Estimate the seconds that the compliance of both bodies takes."""
     setup = contact_setup(**typed_arguments(contact_setup, {key: case.values[key] for key in CONTACT}))
     return 1e-9 * COMPLIANCE * setup.memory
 
 
 def _contact(case: Case) -> float:
+    """Estimate the seconds that the contact analysis takes."""
     contact = case.values["contact"]
     gauges = 2.0 if contact["root_stress"] else 1.0
     return gauges * POSITION * contact["positions_per_pitch"] * len(contact["torques_n_m"])
 
 
 def _sweep(case: Case) -> float:
+    """Estimate the seconds that the sweep takes."""
     sweep, machine = case.values["dynamics"]["sweep"], case.values["transmission"]
     meshes = len(machine["pinions"]) * len(machine["face_gears"])
     return SPEED * sweep["points"] * len(sweep["directions"]) * meshes
 
 
 def _sharing(case: Case) -> float:
+    """Estimate the seconds that load sharing takes."""
     speeds = case.values["load_sharing"]["speed_range"]
     return MOTION * len(case.cases) + SHARED_SPEED * speeds["points"]
 
 
 def _samples(case: Case) -> float:
+    """Estimate the seconds that samples of tolerances take."""
     return SAMPLE * float(case.values["tolerances"]["samples"])
 
 
 def _search(case: Case) -> float:
+    """Estimate the seconds that the search takes."""
     section = case.values["search"]
     return DESIGN * section["generations"] * section["population"] * len(section["seeds"])
 

@@ -18,6 +18,7 @@ ROWS = (
     *strength.ROWS,
     *variants.ROWS,
 )
+"""All stages, chapter by chapter; none takes from a later one."""
 
 STAGES = {stage.name: stage for stage in ROWS}
 """By name, in the order in which a case goes through them."""

@@ -90,6 +90,7 @@ def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
 
 
 def _phasing(phasing: str | Mapping[str, float]) -> str:
+    """Say in words how the transmission errors of the meshes lag."""
     if isinstance(phasing, str):
         return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]
     lags = ", ".join(f"{mesh} {lag:g}" for mesh, lag in phasing.items())
@@ -97,10 +98,12 @@ def _phasing(phasing: str | Mapping[str, float]) -> str:
 
 
 def _variation(factor: float) -> str:
+    """Say in words by which factor the stiffness varies more than computed; empty for 1."""
     return "" if factor == 1.0 else f", {factor:.3g} times its variation"
 
 
 def _kinematics(transmission: Mapping[str, Any]) -> str:
+    """Say in words which kinematics meshes have."""
     radius = transmission["face_gear"]["mesh_radius_mm"]
     return "meshes geometric" if radius is None else f"meshes as printed, mesh radius {radius:g} mm"
 
@@ -109,6 +112,7 @@ KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
     "printed": "printed, equation (13) of the source paper to the letter (docs/explanation/theory.md)",
 }
+"""Mesh kinematics in words."""
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""
 
@@ -232,7 +236,7 @@ def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
-    """Safeties, factors of the load and loss, where they were computed."""
+    """Return safeties, load sharing and dynamic factors and loss by name, where they were computed."""
     numbers: dict[str, float] = {}
     if "rating" in tables:
         smallest = tables["rating"].groupby("failure")["safety"].min()
@@ -247,6 +251,7 @@ def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
 
 
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the key numbers of the teeth from the record of their geometry."""
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
     path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
@@ -263,6 +268,7 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
+    """Return the text of the chapter: what the machine is, in words."""
     pair, transmission = values["tooth_pair"], values["transmission"]
     teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
     source = SOURCES[values["mesh_stiffness"]["source"]]

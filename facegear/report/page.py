@@ -26,7 +26,9 @@ DECIMALS = 2
 UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
+"""White space that one blank can stand for."""
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
+"""Decimal number in a svg."""
 
 
 def data_uri(still: str) -> str:
@@ -69,13 +71,16 @@ def shortened(svg: str) -> str:
 
 
 def _round_numbers(attribute: re.Match[str]) -> str:
+    """Round the coordinates of an attribute to DECIMALS."""
     parts = NUMBER.split(attribute[2])
     parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
     return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
 
 
 FOLDER = Path(__file__).parent
+"""Folder of the page's parts."""
 TEMPLATE = FOLDER / "page.html.j2"
+"""Template of the page."""
 LIBRARY = FOLDER / "plotly-cartesian.min.js"
 """plotly.js as its makers publish it, the part with curves, bars and maps; its licence stands beside it."""
 
@@ -136,7 +141,7 @@ class View:
     kind: Literal["pair", "body"] = "pair"
 
     def compressed_data(self) -> str:
-        """Return the data as the page carries them.
+        """Return the data as compressed text, which the page's script unpacks.
 
         Returns
         -------
@@ -201,10 +206,12 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
 
 
 def _own_file(name: str) -> str:
+    """Return the text of a file beside this module."""
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
 def _json(content: Any) -> bytes:
+    """Return plain values as compact JSON."""
     return json.dumps(content, separators=(",", ":")).encode()
 
 

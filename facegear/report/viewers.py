@@ -23,6 +23,7 @@ LINE = ("torque_n_m", "position", "tooth", "plane")
 PROFILE, WIDTH = 17, 7
 """Points of each drawn patch."""
 SHOWN_GEAR_TEETH = 13
+"""Number of gear teeth drawn around the mesh; more would only cost size of the page."""
 QUANTITIES = (
     {
         "key": "pressure",

@@ -87,6 +87,7 @@ def grouped_warnings(
 
 
 def _of_note(note: str) -> ResultWarning:
+    """Return the warning of a note `key: words` on the config."""
     key, _, words = note.partition(": ")
     section = key.split(".")[0].split(" ")[0]
     if key == section:

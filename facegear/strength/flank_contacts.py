@@ -69,7 +69,7 @@ class TensionHistory:
 
 
 def _cell(edges: Array, values: Array) -> tuple[Integers, Array]:
-    """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
+    """Return the cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
     cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
     return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)
 

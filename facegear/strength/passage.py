@@ -295,16 +295,18 @@ def face_error(root: RootStress, coarser: RootStress) -> float:
 
 
 def _along_face(stress: Array) -> Array:
-    """Largest tension (b,) below the loaded flank of stress (n, 2, a, b) over a passage."""
+    """Return the largest tension (b,), Pa, below the loaded flank over a passage, of stress (n, 2, a, b)."""
     return np.asarray(down_the_fillet(stress[:, 0]).max(axis=(0, 1)))
 
 
 def _positions(root: RootStress) -> Array:
-    """Position (n,) in the pitch of each place of the passage."""
+    """Return the position in the pitch (n,) of each place of the passage."""
     return np.round(root.passage % 1.0, 9)
 
 
 def _worst_positions(root: RootStress) -> set[float]:
-    """Positions in the pitch where tension is largest at the smallest and at the largest torque."""
+    """Return the positions in the pitch where tension is largest at the smallest and at the
+    largest torque.
+    """
     worst = {int(root.stress[row, :, 0].max(axis=(1, 2)).argmax()) for row in (0, -1)}
     return {float(_positions(root)[index]) for index in worst}

@@ -195,7 +195,7 @@ class SampledMachine(VariedMachine):
         return {column: off[name] for name, column in SIMPLIFICATION_ERRORS.items()}
 
     def _cycle_deviations(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return the error of the mesh cycles taken: columns MISSED."""
+        """Return the errors by the mesh cycles left out: columns of CYCLE_SELECTION_ERRORS."""
         whole = self.whole_judge(sample)
         paths = matching_names(f"{K_GAMMA} ", list(whole))
         deviations = {name: whole[name] - values[name] for name in (OPEN_FRACTION, REVERSED_FRACTION)}

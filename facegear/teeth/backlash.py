@@ -9,6 +9,7 @@ from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import mirror_design, pinion_angle
 
 POSITIONS = 4
+"""Number of positions of a pitch at which backlash is searched; without assembly errors it is constant."""
 
 
 @lru_cache(maxsize=256)
@@ -44,6 +45,7 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
 
 
 def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
+    """Return the smallest play, m, of the drive and back flank over a pitch, by a search over the flanks."""
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.teeth.unloaded_contact import unloaded_motion
 

@@ -147,6 +147,7 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
 
 
 def _contact(contact: UnloadedContact) -> dict[str, Any]:
+    """Return the record of an unloaded contact: angles, transmission error and path."""
     roll, y = contact.path
     error = 1e6 * contact.transmission_error
     return {
@@ -160,6 +161,7 @@ def _contact(contact: UnloadedContact) -> dict[str, Any]:
 
 
 def _gap(gap: Gap) -> dict[str, Any]:
+    """Return the record of a gap: its size and where on both bodies."""
     return {
         "gap_um": 1e6 * gap.gap,
         "along_line_of_action_um": 1e6 * gap.approach if np.isfinite(gap.approach) else None,

@@ -25,6 +25,7 @@ from facegear.teeth.design import (
 )
 
 CUBIC = 3
+"""Degree of the spline through deviations, where there are enough lines for it."""
 
 
 def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:
@@ -111,11 +112,13 @@ def mean_crowning(grid: DeviationGrid | None) -> float:
 
 
 def _ends(line: tuple[float, ...]) -> tuple[float, float]:
+    """Return the first and the last value."""
     return line[0], line[-1]
 
 
 @lru_cache(maxsize=512)
 def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
+    """Return the spline through the deviations of a grid, m."""
     lines = [np.array(line) for line in (grid.face, grid.profile)]
     orders = [min(CUBIC, line.size - 1) for line in lines]
     values = np.array(grid.deviation)

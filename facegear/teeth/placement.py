@@ -288,7 +288,9 @@ def to_pinion_section(design: PairDesign, phi1: Array, phi2: Array, teeth: Array
 
 
 GEARS = ("upper", "lower")
+"""Face gears of a machine."""
 FLANKS = ("drive", "back")
+"""Flanks of a mesh."""
 
 
 def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:

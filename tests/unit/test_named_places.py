@@ -50,7 +50,7 @@ COMPILED = {path.stem for path in (ROOT / "facegear/_kernels/src/bindings").glob
 OF_WORKFLOW = {"facegear.yaml", "facegear.lock"}
 """Files of a user's project."""
 VARIABLES = {"facegear", "_kernels", "gearbox", "study", "sys", "tool", "module"}
-"""What another test looks up, compiled modules, objects of a reader's script, and tables of files."""
+"""Words that name compiled modules, objects of a reader's script, tables, or what another test checks."""
 FILE_ENDS = {
     *(
         "py",

@@ -15,6 +15,10 @@ SAMPLE = '''"""The same of a module."""
 
 KEPT = 1
 """Of a constant."""
+SPEED, _LOAD = 1.0, 2.0
+FORCE = 1.0  # N, of the example
+# Turns of the example.
+TURNS: int = 3
 
 
 class Others:
@@ -72,6 +76,8 @@ BROKEN = {
     "<module>::opening",
     "KEPT::name",
     "KEPT::opening",
+    "SPEED::constant",
+    "_LOAD::constant",
     "Others::name",
     "Others.area.own::name",
     "Others.area::units",

@@ -233,6 +233,7 @@ def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
 
 
 def _half(system: TiedSystem, sign: float) -> Half:
+    """Build the symmetric (sign 1) or antisymmetric (-1) half of a mirror-symmetric system."""
     behind, count = system.mirror, len(system.points)
     on_plane = behind == np.arange(count)
     before = on_plane | (system.points[:, 1] < system.points[behind, 1])

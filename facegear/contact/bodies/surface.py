@@ -208,11 +208,13 @@ def _by_point(basis: Basis) -> tuple[Integers, Array]:
 
 
 def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
+    """Build a sparse matrix with a row of weights for each point on its element's nodes."""
     pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
     return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))
 
 
 GAUSS = 1.0 / np.sqrt(3.0)
+"""Coordinate of the points of the two-point Gauss rule on [-1, 1], dimensionless."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -78,6 +78,7 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
 
 
 def _about_z(angle: float) -> Array:
+    """Return the matrix (3, 3) of a rotation about z by an angle, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -235,7 +236,7 @@ class DisplacedFlank:
 
     @property
     def closure(self) -> float:
-        """The part of `approach` beyond the first order."""
+        """Approach of the flanks beyond its linear part in the displacements, m."""
         return self.approach - self.deflection
 
 

@@ -377,4 +377,5 @@ def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: boo
 
 
 def _three(errors: AssemblyErrors) -> Array:
+    """Return offset, m, axial shift, m, and shaft angle error, rad, as an array (3,)."""
     return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])

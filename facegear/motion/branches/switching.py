@@ -129,6 +129,7 @@ def image_point(period_map: PeriodMap, point: BranchPoint, symmetry: Symmetry) -
 
 
 def _image_special(period_map: PeriodMap, special: Special, symmetry: Symmetry) -> Special:
+    """Return a special point's mirror image, with meshes and signs exchanged."""
     count = symmetry.contacts.size
     sources = symmetry.contacts.tolist()
     meshes = tuple(sources.index(mesh) if mesh < count else mesh for mesh in special.meshes)

@@ -81,12 +81,12 @@ class Integrator:
 
     @property
     def order(self) -> int:
-        """Order of the steps."""
+        """Order of the Taylor polynomials of the steps."""
         return int(self.work.order)
 
     @property
     def scale(self) -> float:
-        """Length that the tolerance means, m."""
+        """Length to which the tolerance is relative, m."""
         return self.system.scale
 
     @property
@@ -106,7 +106,7 @@ class Integrator:
 
     @property
     def mesh_jacobian(self) -> Array:
-        """Deflections by coordinates, (m, n)."""
+        """Matrix (m, n) from coordinates to mesh deflections."""
         return self.system.mesh_jacobian
 
     @property

@@ -163,6 +163,7 @@ class Coupling:
 
     @property
     def _matrices(self) -> tuple[Array, Array, Array, Array]:
+        """Matrices of dampers, gyroscopic, circulatory and centrifugal terms."""
         return self.dampers, self.gyroscopic, self.circulatory, self.centrifugal
 
 
@@ -331,7 +332,7 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
 def _basis(
     linear: LinearModel, stiffness: Array, directions: Array, coupling: Coupling | None
 ) -> tuple[Array, Array]:
-    """Basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
+    """Return basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
     them.
     """
     axes, mass, principal = _principal_axes(linear, stiffness)
@@ -351,7 +352,7 @@ def _basis(
 
 
 def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None, Array, Array]:
-    """Axes (dof, dof), in columns, along which masses and bearings are decoupled, or None for the
+    """Return axes (dof, dof), in columns, along which masses and bearings are decoupled; None for the
     coordinates.
 
     Also return masses and stiffnesses (dof,) along them.
@@ -382,6 +383,7 @@ def _coupling(linear: LinearModel) -> Coupling | None:
 
 
 def _ring_rows(linear: LinearModel) -> list[Array]:
+    """Return the rows that give the displacement of each bearing with clearance."""
     rows = np.zeros((len(linear.ring_coordinates), 3, linear.size))
     for row, coordinates in zip(rows, linear.ring_coordinates, strict=True):
         row[[0, 1], coordinates] = 1.0

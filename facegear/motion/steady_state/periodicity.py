@@ -215,6 +215,7 @@ def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
 
 
 def _at_rest(near: BestReturn, goal: float) -> bool:
+    """Whether a run has converged, judged by its residual and rate of approach."""
     if near.residual > goal or np.isnan(near.trend):
         return False
     return near.residual <= 10.0 * goal * max(1.0 - near.rate, 1e-3)

@@ -267,6 +267,7 @@ class SettlingRun:
         )
 
     def _advance(self) -> RunPlan[None]:
+        """Run a further block of periods and store their end states."""
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.initial_count and self.known_orbit is None:
@@ -310,6 +311,7 @@ class SettlingRun:
         return worth
 
     def _shot(self, period: int, matrices: int = MATRICES) -> Orbit | None:
+        """Solve for a periodic orbit from the current state by shooting."""
         return shoot(self.integrator, self.state, period, self.settings.periodic_residual, matrices)
 
     def _by_itself(self, near: BestReturn, last: bool) -> SettlingResult | None:
@@ -383,6 +385,7 @@ class SettlingRun:
         self.initial_count = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> SettlingResult:
+        """Return the result with an orbit, or with the current state without one."""
         state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
         return SettlingResult(

@@ -98,6 +98,7 @@ def _excited(machine: Machine, basis: Array, system: System) -> System:
 
 @lru_cache(maxsize=8)
 def _cached_reduction(machine: Machine) -> Reduction:
+    """Reduce a machine's coordinates; equal machines share the result."""
     return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 

@@ -207,7 +207,7 @@ def _class(
     window: Window,
     settings: Settings,
 ) -> Motion:
-    """Class of a motion that was watched without closing, from its exponent and the window after it."""
+    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after it."""
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
     near = best_return(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settling_result.residual, near.residual) < ESCAPING

@@ -138,7 +138,7 @@ class Piece:
         return Piece(**{name: getattr(self, name)[speeds] for name in self.__dataclass_fields__})
 
     def tail(self, start: int) -> "Piece":
-        """Return the results from a position on.
+        """Return the results from one speed of the piece on.
 
         Parameters
         ----------
@@ -325,7 +325,10 @@ def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
 def _row(
     views: Array, directions: int, speed: float, response: SteadyState
 ) -> dict[str, Array | float | str]:
-    """Numbers of one response; views (n, directions + modes) takes coordinates to translations and modes."""
+    """Return the numbers of one response that a sweep stores.
+
+    `views` (n, directions + modes) takes coordinates to translations and modes.
+    """
     periodic = response.period > 0
     meshes = response.moments
     rms, ac_rms, interval = response.averages.views(views, periodic)

@@ -229,6 +229,7 @@ JUMP_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of jumps; units stand in the names."""
 RESONANCE_COLUMNS = (
     "direction",
     "speed_rpm",
@@ -245,6 +246,7 @@ RESONANCE_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of peaks and the modes nearest to them; units stand in the names."""
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
@@ -340,7 +342,7 @@ def _after_irregular(piece: Piece, position: int) -> bool:
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
-    """Columns that name a resonance."""
+    """Return the columns that name a resonance: its kind, order and mode."""
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,

@@ -15,6 +15,7 @@ from facegear.io import documents
 from facegear.io.atomic import MANIFEST_SUFFIX, sha256
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pandas", "snakemake")
+"""Libraries whose versions a manifest names, as far as they were imported."""
 
 
 def write_manifest(

@@ -73,6 +73,7 @@ class ResponseResult(Result):
 
 
 KEYS = ["direction", "speed_rpm"]
+"""Columns by which rows of a sweep belong together."""
 NO_ITEM = "machine"
 """Name in place of body or mesh, in rows that belong to the whole machine."""
 
@@ -253,6 +254,7 @@ class SweepResult(Result):
 
 
 FIGURES = ("amplitudes", "fractions", "multipliers")
+"""Names of the figures of branches."""
 
 
 class BranchesResult(Result):

@@ -62,6 +62,7 @@ class GeometryResult(Result):
 
 
 def _sections(record: dict) -> list[tuple[str, dict]]:
+    """Return a record and each mapping inside it, with their names."""
     inner = [(name, value) for name, value in record.items() if isinstance(value, dict)]
     return [("", record), *inner]
 

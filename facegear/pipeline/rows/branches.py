@@ -5,6 +5,7 @@ from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, SPEED, S
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
+"""Needs of the stages that follow branches."""
 
 ROWS = (
     Stage(
@@ -103,3 +104,4 @@ ROWS = (
         minutes=60,
     ),
 )
+"""Stages that follow branches of periodic motions."""

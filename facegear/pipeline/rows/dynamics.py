@@ -157,3 +157,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on stiffness over the load, response, sweep and modes."""

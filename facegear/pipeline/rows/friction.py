@@ -5,6 +5,7 @@ from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, PAIR, SP
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 STORED_CONTACT = from_stage("contact", "ltca", "pressure")
+"""Tables and arrays of the contact analysis that friction takes."""
 
 PAIR_ROWS = (
     Stage(
@@ -40,6 +41,7 @@ PAIR_ROWS = (
         local=True,
     ),
 )
+"""Stages on friction of the pair alone."""
 
 ROWS = (
     Stage(
@@ -84,3 +86,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on friction and loss of the machine."""

@@ -79,7 +79,7 @@ ROWS = (
             "torsion": File("shafts/torsion.csv", ("body", "mass", "windup_deg"), may_be_empty=True),
         },
         figures=Figures(
-            draw="facegear.report.figures.machine:shafts_figures",
+            draw="facegear.report.figures.shafts:shafts_figures",
             names=machine_conditions.shaft_figures,
             chapter="load_sharing",
             upstream=from_stage("shafts", "bearings", "deflections"),
@@ -170,3 +170,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on bodies, poses, ratings, shafts and modes of the machine."""

@@ -17,7 +17,9 @@ from facegear.pipeline.rows.common_needs import (
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 GEARS = {"gears": ComputedValue(arguments.gears_met, ("transmission",))}
+"""Gears of the machine that the rating meets."""
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
+"""Root stress and contact by flank."""
 
 POSED_CONTACT = {
     "posed_contacts": From("posed_stress", "contacts", when=conditions.poses),
@@ -103,6 +105,7 @@ LOAD_ROWS = (
         },
     ),
 )
+"""Stages on root stress and loads of the duty cycle."""
 
 ROWS = (
     Stage(
@@ -180,3 +183,4 @@ ROWS = (
         condition=machine_conditions.machine_stress,
     ),
 )
+"""Stages on safety, life and stress in motion."""

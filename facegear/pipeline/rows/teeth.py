@@ -5,8 +5,11 @@ from facegear.pipeline.rows.common_needs import FLANKS, PAIR
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
+"""Needs of a finite-element mesh of the teeth."""
 BODY = {"body": "pinion|face_gear"}
+"""Wildcard of both bodies."""
 CONTACT_POINTS = ComputedValue(contact_studies.contact_points, ("studies",))
+"""Points of studies that have a contact analysis of their own."""
 STUDIED_CONTACT = {
     "pair": From("geometry", "pair", each_wildcards=contact_studies.contact_cases),
     **{
@@ -14,6 +17,7 @@ STUDIED_CONTACT = {
         for kind in ("ltca", "by_torque", "pressure")
     },
 }
+"""Geometry and contact of the machine and of the studied points."""
 
 ROWS = (
     Stage(
@@ -248,3 +252,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on geometry, compliance, contact and stiffness."""

@@ -5,7 +5,9 @@ from facegear.pipeline.rows.common_needs import ACCURACY, BODIES, HARMONICS, OPT
 from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
+"""Keys that decide what samples are drawn."""
 SOLID = ComputedValue(machine_conditions.solid_pair, ("transmission", "tooth_pair"))
+"""Tooth pair where bodies that bend depend on it."""
 SAMPLE_NEEDS: Needs = {
     **SHARING,
     "tolerances": CAUSES,
@@ -13,6 +15,7 @@ SAMPLE_NEEDS: Needs = {
     "lubrication_sections": ComputedValue(arguments.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
+"""Needs of the samples of tolerances."""
 SAMPLED_FROM = {
     **HARMONICS,
     **BODIES,
@@ -21,6 +24,7 @@ SAMPLED_FROM = {
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.sampled_contact
     ),
 }
+"""Sources of the samples of tolerances."""
 SEARCH_NEEDS: Needs = {
     **PAIR,
     **ACCURACY,
@@ -32,6 +36,7 @@ SEARCH_NEEDS: Needs = {
     "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), conditions.PAIR_SECTIONS),
     "solid": SOLID,
 }
+"""Needs of the search."""
 SEARCHED_FROM = {
     **HARMONICS,
     **BODIES,
@@ -39,6 +44,7 @@ SEARCHED_FROM = {
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.searched_contact
     ),
 }
+"""Sources of the search."""
 
 ROWS = (
     Stage(
@@ -151,3 +157,4 @@ ROWS = (
         minutes=60,
     ),
 )
+"""Stages on tolerances and search."""

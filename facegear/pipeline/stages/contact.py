@@ -70,7 +70,7 @@ def contact(
 
 
 def contents(analysis: ContactAnalysis) -> dict[str, Any]:
-    """Return the parts of stage contact.
+    """Return the tables and arrays that stage contact stores.
 
     Parameters
     ----------
@@ -141,6 +141,7 @@ def contact_studies(
 
 
 ORDERS = 6
+"""Number of orders of a gear's turn that the table of tooth errors lists; higher ones stay in the curves."""
 
 
 def tooth_errors(
@@ -215,10 +216,12 @@ def tooth_errors(
 
 
 def _curve_orders(curve: Array) -> Array:
+    """Return the amplitudes of the first ORDERS orders of a curve over one period."""
     return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
 
 
 DEFAULT = ContactOptions()
+"""Options of contact of a pair for which the config says nothing."""
 
 
 def mesh_law(
@@ -327,7 +330,9 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """Factor of source fem_scaled on forces and slopes, equal to the factor of stage stiffness on k."""
+    """Return the factor by which source fem_scaled multiplies forces and slopes: the factor of stage
+    stiffness on k.
+    """
     if request.source != "fem_scaled":
         return 1.0
     assert request.mean is not None

@@ -158,7 +158,7 @@ def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
 
 
 def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) -> pd.DataFrame:
-    """Tabulate the nodes.
+    """Tabulate the quantities at all poses and torques at which contact is solved for the pose surface.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def operating_pose(
 def _direct(
     design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, AnyArray]:
-    """Quantities of a surface, and REACTIONS of the touching loads."""
+    """Return the quantities of a pose surface, and the REACTIONS, from contact solved directly at a pose."""
     table = posed_contact.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
     return {**quantities(design, flanks, posed_contact), **dict(zip(REACTIONS, table.T, strict=True))}
 
@@ -308,6 +308,7 @@ def _check(
 
 
 def _summary(meshes: pd.DataFrame, leaving_loads: pd.DataFrame, worst: int, result: OperatingPose) -> str:
+    """Say in one line how the search for the loaded position ended and which mesh it changes most."""
     row = meshes.iloc[worst]
     text = (
         f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "

@@ -92,7 +92,7 @@ def root_stress(
 def root_contents(
     flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
-    """Return the parts of the stage.
+    """Return the tables and arrays that stage root_stress stores.
 
     Parameters
     ----------
@@ -124,12 +124,15 @@ def root_contents(
 
 
 def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_error: float) -> RootStress:
+    """Compute the root stress of a body over a passage; the error along the face is added to its own."""
     root = passing(body, flank, loads, variant)
     return replace(root, error=root.error + face_error)
 
 
 def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
-    """Relative errors of the planes along the face; nan where they are not known."""
+    """Return the relative error of root stress by the planes along the face, by body; nan where it is not
+    known.
+    """
     pair = setup.pair
     materials = {body: pair.material(body) for body in BODIES}
     try:
@@ -140,6 +143,7 @@ def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[
 
 
 def _summary(table: pd.DataFrame) -> str:
+    """Say in one line the largest root stress of each body."""
     worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
     peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
     text = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())

@@ -10,6 +10,7 @@ from facegear.teeth.analysis import analyse, jam, jam_in_words, summary_in_words
 from facegear.teeth.document import contact_arrays, ease_off, flank_arrays, pair_record
 
 EASE_OFF_GRID = (37, 29)
+"""Points along profile and width of the separation's map; only the drawing depends on it."""
 
 
 def geometry(tooth_pair: ToothPair) -> Outcome:

@@ -20,6 +20,7 @@ from facegear.teeth.solids import solid, teeth_of, triangles
 from facegear.teeth.tooth_mesh import SectorMesh, gear_tooth, pinion_tooth, sector
 
 KINDS = ("msh", "vtu", "inp")
+"""Endings of the mesh files."""
 
 
 def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:

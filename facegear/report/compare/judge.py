@@ -29,6 +29,7 @@ UNDETERMINED = ("shapes.csv",)
 NOT_STORED = "not_stored.json"
 """Record inside a stored answer: the tables that were too large for it."""
 COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerical_error", "verdict")
+"""Columns of the rows of a comparison."""
 
 
 class Verdict(StrEnum):
@@ -143,6 +144,7 @@ def tables_not_stored(folder: Path) -> set[str]:
 
 
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
+    """Judge all values of a table that stands in one or both folders."""
     if old is None or new is None:
         return _one_sided(name, ["whole table"], Verdict.ONLY_IN_NEW if old is None else Verdict.ONLY_IN_OLD)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
@@ -199,6 +201,7 @@ def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.D
 
 
 def _value_text(value: object) -> str:
+    """Return a value as text of at most ten digits."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
@@ -247,6 +250,7 @@ def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
 def _judge_column(
     name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
+    """Judge the values of one column row by row, with their errors."""
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     rows = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
@@ -333,6 +337,7 @@ def _same_but_for_items(
 
 
 def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    """Return the values of a quantity in the order of the rows of `by_size`."""
     return pd.Series(quantity.to_numpy()[by_size.index])
 
 
@@ -351,7 +356,7 @@ def _relative_change(
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
-    """Rows whose motion does not repeat, shape (rows,)."""
+    """Return for which rows (rows,) the motion does not repeat."""
     motions = [frame[column] for column in table.motion if column in frame.columns]
     rows = np.zeros(len(frame), dtype=bool)
     for motion in motions:
@@ -370,12 +375,15 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
 
 
 def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
-    """Rows for which a column of yes and no says yes, shape (rows,); none where there is no such column."""
+    """Return for which rows (rows,) a column of truth values is true; for none where there is no
+    such column.
+    """
     if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
     return frame[column].fillna(False).astype(bool).to_numpy()
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:
+    """Return rows that stand in one folder only, with their verdict."""
     frame = pd.DataFrame({"file": name, "row": rows}, columns=list(COLUMNS))
     return frame.assign(verdict=verdict)

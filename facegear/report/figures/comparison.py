@@ -69,7 +69,9 @@ def split_label(label: str) -> tuple[str, str]:
 
 
 MARKERS = ("square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+"""Markers of the winners, in their order."""
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+"""Lines of the seeds, in their order."""
 
 
 def front_figure(
@@ -109,6 +111,7 @@ def front_figure(
 
 
 def _axis(objective: str) -> Axis:
+    """Return the axis of an objective or of the generations."""
     return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 

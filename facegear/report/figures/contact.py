@@ -26,6 +26,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
+"""Numbers of the tooth pairs, as their legend has them."""
 
 MARKS = (
     (("pinion tip", "gear tip"), "square", BLUE, "tip edge: line load only"),
@@ -235,6 +236,7 @@ def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
 
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+"""Lines of the cases after the colours are used up."""
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
@@ -405,6 +407,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
+    """Return the title of a panel with the radius of the contact path and the largest pressure."""
     pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
     return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
 

@@ -136,9 +136,13 @@ def load_figures(table: pd.DataFrame) -> tuple[Figure, ...]:
 
 
 LINES = 8
+"""Number of curves of the law's force over the phase."""
 POSITIONS = 96
+"""Number of phases of a mesh cycle at which the law is drawn."""
 DEPTHS = 60
+"""Number of deflections at which the law is drawn."""
 LAW_COLOURS = (RED, BLUE, GREEN, PURPLE)
+"""Colours of the laws, in their order."""
 
 
 def force_lines(law: Arrays) -> Figure:

@@ -14,7 +14,9 @@ from facegear.report.figures.description import Axis, Figure, Panel, apart
 from facegear.report.figures.marks import Area, Bars, ColourScale, Curve, Levels, LineStyle, Look, Solid, Text
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+"""Colours of pinion and face gear, as in all drawings of teeth."""
 AZIMUTH, ALTITUDE = np.radians([150.0, 50.0])
+"""Direction of the light on the pair in mesh, rad."""
 LIGHT = np.array([np.cos(AZIMUTH) * np.cos(ALTITUDE), np.sin(AZIMUTH) * np.cos(ALTITUDE), np.sin(ALTITUDE)])
 """Direction from which the pair in mesh is lit."""
 LABEL_GAP = 0.1
@@ -133,6 +135,7 @@ def _quads(grid: Array) -> Array:
 
 
 def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a pinion tooth's section with its radii."""
     half = 1e3 * flanks["pinion_section"]
     tooth = np.concatenate([half[::-1], half * [-1, 1]])
     foot = half[:, 1].min() - 1.5
@@ -176,6 +179,7 @@ def path_text(record: Mapping[str, Any]) -> str:
 
 
 def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a gear tooth's sections at three radii, with its limits."""
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
@@ -278,7 +282,9 @@ AXES = {
     "pinion": (("From the middle of the face", "mm"), ("Length of roll", "mm")),
     "face_gear": (("Gear radius", "mm"), ("Depth below the tip plane", "mm")),
 }
+"""Names and units of the axes of a flank chart, along the face and along the profile."""
 EXCESS_COLOUR, LACK_COLOUR = RED, BLUE
+"""Colours of material added and missing."""
 HEIGHT = 0.14
 """Height of the largest deviation, in parts of the profile."""
 

@@ -12,19 +12,23 @@ from facegear.report.figures.description import NARROW, Axis, Figure, Key, Panel
 from facegear.report.figures.marks import Area, Curve, Faces, LineStyle, Look, Mark, Scatter, Text
 
 OTHER_MODES = "other"
+"""Kind of a mode that is no wave of a gear."""
 WORDS = {
     "standing": "standing waves",
     "forward": "forward waves",
     "backward": "backward waves",
     OTHER_MODES: "other modes",
 }
+"""Kinds of modes in words."""
 IN_WAVES = 0.25
 """Part of the kinetic energy in the waves of one gear above which a mode is coloured and marked as theirs;
 two equal gears may share a mode in halves."""
 COLOURS = {"standing": grey(0.3), "forward": RED, "backward": BLUE, OTHER_MODES: grey(0.75)}
+"""Colour of each kind of mode."""
 MARKERS = {"standing": "circle", "forward": "triangle-up", "backward": "triangle-down"}
 """Marker of a crossing by its kind of wave; its area grows with the square of the phase factor."""
 MARK_SIZE = 6.0
+"""Size of a crossing's marker where all phases add up, points."""
 
 
 def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
@@ -184,6 +188,7 @@ def gear_waves_figures(
 SWING = 0.08
 """Largest displacement drawn, in the section's radial width."""
 COLUMNS = 2
+"""Number of columns of panels of mode shapes."""
 
 
 def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
@@ -354,7 +359,9 @@ def gear_bodies_figures(
 
 
 GEARS = {"pinion": BLUE, "face_gear": RED}
+"""Colour of the orders of each gear's turns."""
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+"""Lines of the largest orders."""
 ORDERS_SHOWN = 3
 """Orders of each gear that are drawn over speed."""
 

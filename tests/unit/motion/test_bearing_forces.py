@@ -23,7 +23,8 @@ from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Motion, Settings
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.motion.track import SampledTrack, periodic_track, track
-from facegear.report.case import bearing_reactions, case_report
+from facegear.report.case import case_report
+from facegear.report.chapter_tables import bearing_reactions
 
 COSINE = np.cos(np.radians(25.0))
 

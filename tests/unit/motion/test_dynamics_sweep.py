@@ -28,7 +28,7 @@ from facegear.motion.sweeps.whole_sweep import (
     whole_sweep,
 )
 from facegear.motion.symmetries import mesh_images
-from facegear.report.figures.motion import campbell
+from facegear.report.figures.campbell import campbell
 from validation.dynamics.convergence import LongRuns, convergence_table, not_converged, watched_longer
 
 AS_THEY_ARE = np.arange(10)[None]
