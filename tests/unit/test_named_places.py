@@ -30,7 +30,7 @@ MODULES = {
 TOPS = "facegear|tests|validation|docs|config|building|workflow|examples|paper"
 SOURCE = "py|hpp|cpp|smk|j2|css|js"
 MADE_BY_THE_READER = re.findall(
-    r"`([\w/]+\.py)`, new", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    r"`([\w/]+\.(?:py|hpp))`, new", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 )
 """Files that a recipe of CONTRIBUTING.md adds."""
 NOT_STORED = {"docs/build", "docs/api", "config/own.yaml", *MADE_BY_THE_READER}
@@ -49,7 +49,7 @@ COMPILED = {path.stem for path in (ROOT / "facegear/_kernels/src/bindings").glob
 """Modules of the kernels, which are made by the build."""
 OF_WORKFLOW = {"facegear.yaml", "facegear.lock"}
 """Files of a user's project."""
-VARIABLES = {"facegear", "_kernels", "modelDescription", "gearbox", "study", "sys", "tool", "module"}
+VARIABLES = {"facegear", "_kernels", "gearbox", "study", "sys", "tool", "module"}
 """Words that name compiled modules, objects of a reader's script, tables, or what another test checks."""
 FILE_ENDS = {
     *(
@@ -69,7 +69,7 @@ FILE_ENDS = {
         "cff",
         "json",
     ),
-    *("csv", "tsv", "npz", "parquet", "zip", "partial", "inp", "msh", "vtu"),
+    *("xml", "csv", "tsv", "npz", "parquet", "zip", "partial", "inp", "msh", "vtu"),
 }
 
 
@@ -207,7 +207,7 @@ def is_defined(name: str) -> bool:
 
 
 def test_dotted_names_of_the_library_exist():
-    made = {path.removesuffix(".py").replace("/", ".") for path in MADE_BY_THE_READER}
+    made = {path.partition(".")[0].replace("/", ".") for path in MADE_BY_THE_READER}
 
     def is_there(match):
         name, first = match[1], match[1].split(".")[1]

@@ -40,7 +40,9 @@ class Step:
                 path.write_text(insertion.code)
                 continue
             line = f"{insertion.line}\n"
-            before, after = path.read_text().split(line)
+            text = path.read_text()
+            assert text.count(line) == 1, (self.file, line)
+            before, after = text.split(line)
             parts = {"below": (line, insertion.code), "above": (insertion.code, line)}
             path.write_text(before + "".join(parts.get(insertion.side, (insertion.code,))) + after)
 
@@ -81,9 +83,9 @@ def python(sources, *arguments, folder=None):
 
 
 def assert_test_passes(sources, steps):
-    """The recipe's own test passes, and ruff finds nothing in the files that it touches."""
+    """The recipe's own test passes, and ruff finds nothing in the files that it makes."""
     tests = [step.file for step in steps if step.file.startswith("tests/")]
-    codes = [step.file for step in steps if step.file.endswith(".py")]
+    codes = [step.file for step in steps if step.is_new]
     tested = ("pytest", "-q", "-p", "references", "-p", "no:cacheprovider", "-c", "/dev/null", *tests)
     for command in (tested, ("ruff", "check", "--config", str(ROOT / "pyproject.toml"), *codes)):
         done = python(sources, "-m", *command)
