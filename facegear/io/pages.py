@@ -1,4 +1,4 @@
-"""Self-contained HTML pages from templates."""
+"""Pages from templates, and the drawings on them."""
 
 from pathlib import Path
 from typing import Any
@@ -7,10 +7,27 @@ from facegear.errors import extras_named
 
 with extras_named():
     import jinja2
+import re
+
+from facegear.errors import CorruptFile
+from facegear.io.atomic import verify
 
 
 def render(template: Path, **values: Any) -> str:
-    """The page as text. Values are escaped; a name that the template uses and `values` lacks is an error."""
+    """Fill in a template. A name that the template uses and `values` lacks is an error.
+
+    Parameters
+    ----------
+    template : Path
+        Template of jinja2.
+    **values : Any
+        Values by name; they are escaped.
+
+    Returns
+    -------
+    str
+        The page.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template.parent),
         autoescape=True,
@@ -19,3 +36,35 @@ def render(template: Path, **values: Any) -> str:
         lstrip_blocks=True,
     )
     return environment.get_template(template.name).render(**values)
+
+
+WHOLE_SVG, TAIL = re.compile(r"(</svg>|<svg[^<]*/>)\s*$"), 1000
+"""How a drawing ends, an empty one with its only element; letters at its end that are looked at."""
+
+
+def read_svg(path: Path) -> str:
+    """Read a drawing, refusing one that is cut off or altered.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the svg.
+
+    Returns
+    -------
+    str
+        Its text.
+
+    Raises
+    ------
+    CorruptFile
+        If it is missing, altered or cut off.
+    """
+    verify(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise CorruptFile(path, "not a readable svg") from None
+    if "<svg" not in text or not WHOLE_SVG.search(text[-TAIL:]):
+        raise CorruptFile(path, "not a whole svg")
+    return text

@@ -41,7 +41,7 @@ def test_the_recipe_makes_a_stage_that_runs_draws_and_answers(followed, tmp_path
     asked = python(followed, "-c", code, folder=tmp_path)
     assert asked.returncode == 0, asked.stderr
     assert {"gear_ratio", "modes_figures"} <= project.planned("--configfile", CONFIG, "--forceall")
-    listed = python(followed, "-m", "facegear.pipeline.listing").stdout
+    listed = python(followed, "-m", "facegear.pipeline.table").stdout
     assert "| gear_ratio | Ratio of the tooth numbers |" in listed
 
 
