@@ -22,12 +22,16 @@ __all__ = [
     "load",
 ]
 
+DOOR = ("Gearbox", "example", "load")
+"""Names of `facegear.gearbox`; all other names of the package are errors."""
+
 
 def __getattr__(name: str) -> Any:
     # Everything behind the door is imported when it is first asked for. The module's name is text, as every
     # stage loads this file, while no fingerprint of a stage holds what lies behind.
     if name in __all__:
-        return getattr(import_module("facegear.gearbox"), name)
+        home = "facegear.gearbox" if name in DOOR else "facegear.errors"
+        return getattr(import_module(home), name)
     raise AttributeError(f"module 'facegear' has no attribute {name!r}")
 
 

@@ -17,7 +17,7 @@ from facegear.build.early_checks import limits_in_words
 from facegear.build.load import load_config, read_layers
 from facegear.checking import check_config
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
-from facegear.exchange.rexs import RexsPinions, known_of_rexs
+from facegear.exchange.rexs_pinions import RexsPinions, known_of_rexs
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.new_machine.first_machine import first_machine
 from facegear.new_machine.wishes import MachineWishes
@@ -26,17 +26,30 @@ from facegear.questions import OPTIONS, QUESTIONS, complete_answers, flag, reade
 from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[1]
+"""Folder of the repository, in which the workflow lies if it is at hand."""
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
 """Rest of the line of a command that was stopped by Ctrl-C: what the user has or can do."""
 CONFIG = "config file (yaml)"
+"""Help text of the argument `config`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; a mistake of the user's ends it with one line each and exit code 1.
+    """Run a command; a mistake of the user ends it with one line for each mistake and exit code 1.
 
-    So does a file or folder that the system refuses. Ctrl-C ends it with one line and exit code INTERRUPTED.
+    A file or folder that the system refuses ends it in the same way. Ctrl-C ends it with one line and exit
+    code INTERRUPTED.
+
+    Parameters
+    ----------
+    arguments : Sequence[str] or None
+        Arguments behind the program's name; those of the process if None.
+
+    Returns
+    -------
+    int
+        Exit code; 0 means success.
     """
     options = parser().parse_args(arguments)
     try:
@@ -74,6 +87,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
+    """Build the parser of the command line, with a subcommand for each command.
+
+    Returns
+    -------
+    Parser
+        Parser whose result holds the function of the chosen command as `command`.
+    """
     top = Parser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
     commands = top.add_subparsers(required=True, metavar="command", dest="name")
@@ -153,7 +173,13 @@ LIMITS = {
 
 
 def installed_version() -> str:
-    """Version of the package, as far as it is installed at all."""
+    """Return the version of the installed package.
+
+    Returns
+    -------
+    str
+        The version, or `unknown: this folder is not installed`.
+    """
     try:
         return version("facegear")
     except PackageNotFoundError:
@@ -209,6 +235,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _with_snakemake(options: argparse.Namespace) -> int:
+    """Run the workflow in a subprocess of Snakemake and return its exit code."""
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
@@ -246,6 +273,7 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
 
 def _run_here(options: argparse.Namespace) -> int:
+    """Compute the whole case in this process, without Snakemake; refuse single targets and dry runs."""
     if options.targets or options.dry_run:
         hint = "the workflow is not part of an installed package: run this from its repository"
         raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
@@ -256,6 +284,7 @@ def _run_here(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
+    """Write the report as one html file; exit code 1 if a stage could not be computed."""
     gearbox = facegear.load(options.config, options.results)
     path = options.output or Path(f"{gearbox.config.case}.html")
     _say_if_new(path.parent)
@@ -270,6 +299,7 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _figures(options: argparse.Namespace) -> int:
+    """Draw the named figures, or all, into a folder and print where they are."""
     gearbox = facegear.load(options.config, options.results)
     folder, suffix = options.output, ".png" if options.png else ".svg"
     if folder is None:
@@ -282,11 +312,12 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _print_stage(stage: str, summary: str) -> None:
+    """Print one line for a finished stage to standard error."""
     print(f"{stage}: {summary}", file=sys.stderr, flush=True)
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Exit code 1 where a run would fail."""
+    """Print mistakes and implausible values of a config; exit code 1 if a run would fail."""
     result = check_config(load_config(options.config), read_yaml(options.config))
     for line in result.remarks:
         print(line)
@@ -301,12 +332,15 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _limits(options: argparse.Namespace) -> int:
+    """Print between which radii the face of a gear may lie."""
     print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
     return 0
 
 
 def _compare(options: argparse.Namespace) -> int:
-    """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
+    """Compare two folders of results; exit code 1 if a value moved beyond its numerical error or a label
+    changed.
+    """
     from facegear.report.compare import answers, judge, page  # these draw, and bring matplotlib
 
     if options.page:

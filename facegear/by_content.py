@@ -23,11 +23,21 @@ class _Call:
 
 
 def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator of a pure function: its last `size` results are kept and shared, so
-    that callers only read them.
+    """Decorate a pure function: its last `size` results are kept and shared, so that callers must only read
+    them.
 
-    Arguments count as the same where all fields of dataclasses, numbers, texts and entries of arrays are, to
-    the last bit; any other object is the same as itself alone.
+    Two calls count as equal where all fields of dataclasses, numbers, texts and entries of arrays of their
+    arguments are equal, to the last bit. Any other object equals itself alone.
+
+    Parameters
+    ----------
+    size : int
+        Number of results to keep; the least recently used one goes first.
+
+    Returns
+    -------
+    Callable
+        The decorator.
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
@@ -48,7 +58,19 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def content(value: Any) -> Any:
-    """A hashable that equals that of another value only where both say the same."""
+    """Return a hashable object that equals the one of another value only where both values have equal
+    content.
+
+    Parameters
+    ----------
+    value : Any
+        Dataclass, array, sequence, mapping or any hashable object.
+
+    Returns
+    -------
+    Any
+        Nested tuple of types, numbers, texts and bytes; an object of another kind stands for itself.
+    """
     return _content(value)[0]
 
 
@@ -57,7 +79,7 @@ _CONTENT_ATTRIBUTE = "_content"
 
 
 def _content(value: Any) -> tuple[Any, bool]:
-    """The content of a value, and whether it will be that for good."""
+    """Return the content of a value, and whether this content can never change."""
     if isinstance(value, np.ndarray):
         return (value.dtype.str, value.shape, value.tobytes()), _is_fixed(value)
     if isinstance(value, tuple | list):
@@ -72,13 +94,16 @@ def _content(value: Any) -> tuple[Any, bool]:
 
 
 def _is_fixed(array: Any) -> bool:
-    """Whether nothing can be written into an array, nor into one that it is a view of."""
+    """Return whether an array is read-only, and each array of which it is a view."""
     while isinstance(array, np.ndarray) and not array.flags.writeable:
         array = array.base
     return array is None
 
 
 def _of_fields(value: Any, names: tuple[str, ...]) -> tuple[Any, bool]:
+    """Return the content of a dataclass from its fields, and whether it can never change; store it there if
+    so.
+    """
     content = getattr(value, _CONTENT_ATTRIBUTE, None)
     if content is not None:
         return content, True
@@ -92,10 +117,10 @@ def _of_fields(value: Any, names: tuple[str, ...]) -> tuple[Any, bool]:
 
 @cache
 def _field_names(kind: Any) -> tuple[str, ...] | None:
-    """Names of a dataclass's fields; None of any other type."""
+    """Return the names of a dataclass's fields; None for any other type."""
     return tuple([part.name for part in fields(kind)]) if is_dataclass(kind) else None
 
 
 def _join_contents(parts: Sequence[tuple[Any, bool]]) -> tuple[tuple[Any, ...], bool]:
-    """Contents of several values, and whether all will stay as they are."""
+    """Return the contents of several values as one tuple, and whether none of them can ever change."""
     return tuple([part for part, _ in parts]), all(is_fixed for _, is_fixed in parts)

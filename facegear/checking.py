@@ -76,7 +76,9 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
 
 
 def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:
-    """Findings about the pair of a case, if it is the first case with one of the first MOST_PAIRS pairs."""
+    """Yield findings on the pair of a case, if no earlier case has this pair and it is one of the first
+    MOST_PAIRS.
+    """
     pairs = list(dict.fromkeys(_pair(values) for values in cases.values()))[:MOST_PAIRS]
     pair = _pair(cases[case])
     first = next(name for name, values in cases.items() if _pair(values) == pair)
@@ -90,7 +92,7 @@ def _pair(values: Mapping[str, Any]) -> str:
 
 
 def _lines(by_case: Mapping[str, Sequence[str]], opening: str = "") -> Iterator[str]:
-    """All lines of the config's own case, and of its studies those about a subject that is new."""
+    """Yield all lines on the config's own case, and the lines on its studies whose subject is new."""
     base = next(iter(by_case))
     subjects: set[str] = set()
     for case, lines in by_case.items():

@@ -10,15 +10,31 @@ class FacegearError(Exception):
 
 
 class ConfigError(FacegearError):
-    """A config value that cannot be used: names the key, the value and what it must be."""
+    """A config value that cannot be used.
 
-    def __init__(self, key: str, value: object, allowed: str) -> None:
-        super().__init__(f"{key} = {value!r}: must be {allowed}")
-        self.key, self.value, self.allowed = key, value, allowed
+    Attributes
+    ----------
+    key : str
+        Dotted key of the config.
+    value : object
+        The value.
+    requirement : str
+        What the value must be, in words that follow "must be".
+    """
+
+    def __init__(self, key: str, value: object, requirement: str) -> None:
+        super().__init__(f"{key} = {value!r}: must be {requirement}")
+        self.key, self.value, self.requirement = key, value, requirement
 
 
 class ConfigErrors(FacegearError):
-    """All mistakes of one config file, one line each."""
+    """All mistakes of one config file, one line each.
+
+    Attributes
+    ----------
+    lines : tuple of str
+        The mistakes, without the file's name.
+    """
 
     def __init__(self, source: str, lines: Sequence[str]) -> None:
         super().__init__("\n".join(f"{source}: {line}" for line in lines))
@@ -26,31 +42,57 @@ class ConfigErrors(FacegearError):
 
 
 class InvalidInput(FacegearError):
-    """A quantity that cannot be computed with: names it in words, its value and what it must be.
+    """A quantity with which nothing can be computed.
 
-    `allowed` may name other quantities `in backticks`. Where the inputs are those of a config, the user reads
-    the keys instead: `facegear.schema.base`.
+    Where the inputs come from a config, the user reads the keys instead: `facegear.schema.base`.
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the quantity in words.
+    value : object
+        The value.
+    requirement : str
+        What the value must be, in words that follow "must be". It may name other quantities in backticks.
     """
 
-    def __init__(self, quantity: str, value: object, allowed: str) -> None:
-        super().__init__(f"{quantity} = {value!r}: must be {allowed.replace('`', '')}")
-        self.quantity, self.value, self.allowed = quantity, value, allowed
+    def __init__(self, quantity: str, value: object, requirement: str) -> None:
+        super().__init__(f"{quantity} = {value!r}: must be {requirement.replace('`', '')}")
+        self.quantity, self.value, self.requirement = quantity, value, requirement
 
 
 class GeometryError(InvalidInput):
-    """A tooth design that cannot exist: names the part's dimension, its value and the limit it breaks."""
+    """A tooth design that cannot exist: the dimension of a part, its value and the limit that it breaks."""
 
 
 class NotConverged(FacegearError):
-    """A solver that did not reach its tolerance: names the stage, where, and what was tried."""
+    """A solver that did not reach its tolerance.
 
-    def __init__(self, stage: str, where: str, tried: str) -> None:
-        super().__init__(f"{stage} did not converge at {where}: {tried}")
-        self.stage, self.where, self.tried = stage, where, tried
+    Attributes
+    ----------
+    stage : str
+        Name of the stage or solver.
+    location : str
+        Operating point at which it failed, such as a speed.
+    attempts : str
+        What was tried.
+    """
+
+    def __init__(self, stage: str, location: str, attempts: str) -> None:
+        super().__init__(f"{stage} did not converge at {location}: {attempts}")
+        self.stage, self.location, self.attempts = stage, location, attempts
 
 
 class CorruptFile(FacegearError):
-    """A stored file that is truncated, altered or not what its reader expects."""
+    """A stored file that is truncated, altered or not what its reader expects.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    problem : str
+        What is wrong with it.
+    """
 
     def __init__(self, path: str | Path, problem: str, rebuild: str | None = None) -> None:
         rebuild = rebuild or f"snakemake --cores 2 --force {path}"
@@ -59,7 +101,15 @@ class CorruptFile(FacegearError):
 
 
 class MissingExtra(FacegearError):
-    """A library that is installed only with an extra of the package: names both."""
+    """A library that is installed only with an extra of the package.
+
+    Attributes
+    ----------
+    library : str
+        Name of the module.
+    extra : str
+        Name of the extra in `pyproject.toml`.
+    """
 
     def __init__(self, library: str, extra: str) -> None:
         folder_text = "in the folder of facegear's sources"
@@ -83,7 +133,18 @@ EXTRAS = {
 
 @contextmanager
 def extras_named() -> Iterator[None]:
-    """Raise MissingExtra in place of the import error of a library that an extra holds."""
+    """Raise MissingExtra in place of the import error of a library that an extra of the package brings.
+
+    Yields
+    ------
+    None
+        Once, to the block that imports the library.
+
+    Raises
+    ------
+    MissingExtra
+        If a library of EXTRAS is not installed.
+    """
     try:
         yield
     except ModuleNotFoundError as error:

@@ -283,6 +283,7 @@ def fit_harmonics(samples: Array) -> Fit:
 
 
 def _transform(samples: Array) -> Harmonics:
+    """Return the Fourier series of evenly spaced samples of one period."""
     count = samples.size
     spectrum = np.fft.rfft(samples)[: (count - 1) // 2 + 1] / count
     spectrum[1:] *= 2.0

@@ -63,4 +63,5 @@ def count_noun(number: int, singular: str, plural: str = "") -> str:
 
 
 def _without_end_zeros(text: str) -> str:
+    """Remove zeros at the end of a decimal number."""
     return text.rstrip("0").rstrip(".") if "." in text else text

@@ -19,7 +19,7 @@ class Progress:
     def __init__(self, label: str, total: int, interval: float = 5.0, stream: TextIO | None = None) -> None:
         self.label, self.total, self.interval = label, max(total, 1), interval
         self.stream = stream
-        self.done = 0
+        self.steps_done = 0
         self.start = self.last = time.monotonic()
         self.first: tuple[float, int] | None = None
         self.estimate: tuple[float, float] | None = None
@@ -32,19 +32,24 @@ class Progress:
         count : int
             Number of finished pieces of work.
         """
-        self.done += count
+        self.steps_done += count
         now = time.monotonic()
         if self.first is None:
-            self.first = now, self.done
-        if (now - self.last < self.interval and self.done < self.total) or now - self.start < self.interval:
+            self.first = now, self.steps_done
+        if (
+            now - self.last < self.interval and self.steps_done < self.total
+        ) or now - self.start < self.interval:
             return
         self.last = now
-        is_estimable = self.first[1] < self.done < self.total
+        is_estimable = self.first[1] < self.steps_done < self.total
         left = f", about {self._left(now, self.first):.0f} s left" if is_estimable else ""
-        print(f"{self.label}: {self.done}/{self.total}{left}", file=self.stream or sys.stderr, flush=True)
+        print(
+            f"{self.label}: {self.steps_done}/{self.total}{left}", file=self.stream or sys.stderr, flush=True
+        )
 
     def _left(self, now: float, first: tuple[float, int]) -> float:
-        left = (now - first[0]) / (self.done - first[1]) * (self.total - self.done)
+        """Return the time left, s, smoothed against the estimate printed last."""
+        left = (now - first[0]) / (self.steps_done - first[1]) * (self.total - self.steps_done)
         if self.estimate is not None:
             then, estimate = self.estimate
             left = 0.5 * (left + max(estimate - (now - then), 0.0))

@@ -5,6 +5,7 @@ from typing import Literal
 
 Body = Literal["pinion", "face_gear"]
 BODIES: tuple[Body, ...] = ("pinion", "face_gear")
+"""Names of the bodies of a pair, pinion first."""
 
 K_GAMMA, K_V = "k_gamma", "k_v"
 """Mesh load factor and dynamic factor, with which names of paths begin."""
@@ -29,7 +30,9 @@ SCUFFING, SCUFFING_MARGIN = "scuffing_safety", "scuffing_margin_k"
 FILM, FILM_RATIO = "smallest_film_um", "smallest_film_ratio"
 """Thinnest film, and its smallest ratio to the roughness."""
 MICROPITTING = "smallest_micropitting_film_ratio"
+"""Smallest specific film for micropitting, dimensionless."""
 UNSOLVED = "unsolved_loss_share"
+"""Fraction of the loss by meshes at torques beyond those solved, dimensionless."""
 FRICTION = (
     *(LOSS, LOSS_PERCENT, BULK, FLASH, CONTACT_TEMPERATURE, SCUFFING, SCUFFING_MARGIN),
     *(FILM, FILM_RATIO, MICROPITTING, UNSOLVED),

@@ -144,4 +144,5 @@ def ask_question(name: str) -> float:
 
 
 def _or_default(name: str, answers: Mapping[str, Any]) -> Any:
+    """Return the answer to a question, or its default."""
     return QUESTIONS[name][1] if answers.get(name) is None else answers[name]

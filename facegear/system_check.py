@@ -3,8 +3,6 @@
 import ctypes.util
 import sys
 
-from facegear import _kernels
-
 PACKAGES = {
     "GLU": "libglu1-mesa",
     "GL": "libgl1",
@@ -40,6 +38,8 @@ def kernels_origin() -> str:
     str
         Compiler, level of instructions, and what builds the kernels sooner where zig built them.
     """
+    from facegear import _kernels  # where they do not load, `main` says so in one line
+
     sentence = f"The kernels were compiled by {_kernels.COMPILER}; those for {_kernels.LEVEL} run here."
     if _kernels.COMPILER.startswith("zig"):
         sentence += " They build sooner with g++ (apt-get install -y g++) or clang++."
@@ -72,11 +72,13 @@ def main() -> int:
 
 
 def _complain(line: str) -> int:
+    """Print a line to standard error and return exit code 1."""
     print(line, file=sys.stderr)
     return 1
 
 
 def _loads(library: str) -> bool:
+    """Whether a shared library can be loaded."""
     name = ctypes.util.find_library(library)
     if name is None:
         return False

@@ -73,5 +73,5 @@ def first_largest_rows(table: pd.DataFrame, column: str, keys: list[str], sort: 
 
 
 def _smallest_tie(largest: Any) -> Any:
-    """Smallest number that counts as equal to the largest, of numbers or arrays of them."""
+    """Return the smallest number that counts as equal to the largest, for numbers or arrays of them."""
     return largest - TIE * abs(largest)

@@ -47,8 +47,8 @@ def kernels() -> dict[str, tuple[ModuleType | type, str]]:
     Returns
     -------
     dict
-        By full name the module or class that holds it, and its name there: `contact.PositionSolver.solve` is
-        the method `solve` of the class `PositionSolver`.
+        By full name the module or class that holds it, and its name there:
+        `_kernels.contact.PositionSolver.solve` is the method `solve` of the class `PositionSolver`.
     """
     modules = {name: part for name, part in vars(_kernels).items() if isinstance(part, ModuleType)}
     parts = {name: part for name, part in modules.items() if not name.startswith("_")}

@@ -54,34 +54,34 @@ PLATFORMS: Mapping[str, Platform] = {
 }
 """All are compared with the first."""
 CASES = (
-    "tests/unit/geometry/test_separation.py",
+    "tests/unit/teeth/test_separation.py",
     "tests/unit/contact/test_manufactured_solutions.py",
     "tests/unit/contact/test_contact_hertz.py",
     "tests/unit/contact/test_contact_patch.py",
     "tests/unit/contact/test_contact_solver.py",
     "tests/unit/contact/test_gauges.py",
-    "tests/unit/transmission/test_modes.py",
-    "tests/unit/transmission/test_geometric_statics.py",
-    "tests/unit/dynamics/test_dynamics_oracles.py",
-    "tests/unit/load_sharing/test_hunting_cycle.py",
+    "tests/unit/machine/test_modes.py",
+    "tests/unit/machine/test_geometric_statics.py",
+    "tests/unit/motion/test_dynamics_oracles.py",
+    "tests/unit/sharing/test_hunting_cycle.py",
     "tests/unit/lubrication",
     "tests/unit/strength/test_spur_rating.py",
-    "tests/unit/scenarios/test_statistics.py",
+    "tests/unit/studies/test_statistics.py",
 )
 """Small cases of all stages that compute."""
 TESTS = (
     "tests/stage/test_example_notebook.py",
     "tests/unit/test_front_door.py",
-    "tests/unit/compare",
+    "tests/unit/report/compare",
     "tests/unit/contact/test_contact_solver.py",
     "tests/unit/contact/test_interfering_teeth.py",
-    "tests/unit/dynamics/branches/test_dynamics_survey.py",
-    "tests/unit/dynamics/test_clean_folds.py",
-    "tests/unit/dynamics/test_dynamics_labels.py",
-    "tests/unit/dynamics/test_dynamics_settling.py",
-    "tests/unit/dynamics/test_dynamics_sweep.py",
-    "tests/unit/dynamics/test_dynamics_symmetries.py",
-    "tests/unit/load_sharing/test_load_sharing_run.py",
+    "tests/unit/motion/branches/test_dynamics_survey.py",
+    "tests/unit/motion/test_clean_folds.py",
+    "tests/unit/motion/test_dynamics_labels.py",
+    "tests/unit/motion/test_dynamics_settling.py",
+    "tests/unit/motion/test_dynamics_sweep.py",
+    "tests/unit/motion/test_dynamics_symmetries.py",
+    "tests/unit/sharing/test_load_sharing_run.py",
     "tests/workflow/test_stored_answers.py",
 )
 """Tests whose labels, notebooks and stored answers a processor might decide."""

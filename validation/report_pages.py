@@ -20,7 +20,7 @@ import pandas as pd
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from facegear.io import documents, tables
-from facegear.pipeline.reported import REPORT_TABLES, table_name
+from facegear.pipeline.report_tables import REPORT_TABLES, table_name
 from facegear.pipeline.table import STAGES
 from facegear.report.compare.answers import SAME_DATE
 from validation.references import ROOT

@@ -14,7 +14,9 @@ from types import ModuleType
 VARIABLE = "FACEGEAR_INSTRUCTIONS"
 """Environment variable that chooses the module for every processor where it is `baseline`."""
 _SOURCES = Path(__file__).with_name("src")
+"""Folder of the C++ sources."""
 _REMEDY = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
+"""Advice where the compiled modules are missing or older than their sources."""
 
 try:
     _module = import_module(f"{__name__}._baseline")

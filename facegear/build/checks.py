@@ -18,7 +18,7 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.unloaded import normal_backlash
+from facegear.teeth.unloaded_contact import normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -287,7 +287,7 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     pair : ToothPair
         Section `tooth_pair` of the config.
     beside : Sequence[float]
-        Argument of `facegear.teeth.unloaded.normal_backlash`: further positions, in pitches.
+        Argument of `facegear.teeth.unloaded_contact.normal_backlash`: further positions, in pitches.
 
     Returns
     -------
@@ -346,12 +346,15 @@ def _pinion_body(pair: ToothPair) -> tuple[float, float]:
 
 
 LINES = "flanks that touch along lines meet any pose with an edge"
+"""Reason of a refusal: contact along lines cannot follow poses."""
 STATIC = "where transmission.operating_pose is static"
+"""Condition of a refusal, in words."""
 OTHER_SURFACE = (
     f"a key of transmission, dynamics or lubrication {STATIC}: a pair that differs is another surface"
 )
 """Requirement on keys that samples and designs may change beside an operating pose."""
 REST = "the contact of samples and designs is that of the pair as assembled"
+"""Reason of a refusal: varied machines have no contact in the loaded position."""
 
 
 def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness) -> None:

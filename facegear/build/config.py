@@ -91,6 +91,7 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
+        """Check what concerns several sections; all mistakes are reported together."""
         require_all(
             self._check_branches,
             self._check_law,
@@ -107,6 +108,7 @@ class Config(Section):
         return self
 
     def _check_friction(self) -> None:
+        """Refuse friction that acts on the motion where the machine or its kinematics do not allow it."""
         if self.lubrication is None or self.lubrication.friction.effect == "loss_only":
             return
         if self.transmission is None or self.transmission.mesh_kinematics == "printed":
@@ -114,6 +116,7 @@ class Config(Section):
             raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, requirement)
 
     def _check_law(self) -> None:
+        """Refuse a load-dependent mesh law with printed kinematics."""
         if self.mesh_stiffness.mesh_law == "constant_load":
             return
         if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
@@ -129,11 +132,13 @@ class Config(Section):
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", requirement)
 
     def _check_poses(self) -> None:
+        """Refuse contact in the loaded position where the machine, or varied quantities, do not allow it."""
         if self.transmission is not None:
             check_poses(self.transmission, self.tooth_pair, self.mesh_stiffness)
             check_posed_variants(self.transmission, self.tolerances, self.search)
 
     def _check_branches(self) -> None:
+        """Refuse branches over parameters or speeds that the machine does not have."""
         speed, section = self.dynamics.speed_rpm, self.branches
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
@@ -148,10 +153,12 @@ class Config(Section):
             raise ConfigError("dynamics.speed_rpm", speed, requirement)
 
     def _check_reproduction(self) -> None:
+        """Refuse a reproduction file that does not exist."""
         if self.reproduction is not None and not Path(self.reproduction).is_file():
             raise ConfigError("reproduction", self.reproduction, "the name of a file that exists")
 
     def _check_pair(self) -> None:
+        """Check that the tooth pair can be built and is given where a section needs it."""
         pair = self.tooth_pair
         if pair.pinion is not None:
             geometric_backlash(pair)
@@ -203,9 +210,11 @@ class Config(Section):
 
     @property
     def _root_stress(self) -> bool:
+        """Whether root stress is asked for, by section contact or by a rating."""
         return self.contact.root_stress or self.strength is not None
 
     def _check_strength(self) -> None:
+        """Refuse material cards whose elasticity is not that of the bodies."""
         if self.strength is None:
             return
         for body in ("pinion", "face_gear"):
@@ -221,6 +230,7 @@ class Config(Section):
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
     def _check_duty_speeds(self) -> None:
+        """Refuse speeds of the duty cycle beyond the sweep that gives the load factors."""
         sweep = self.dynamics.sweep
         if self.strength is None or self.strength.load_factors != "machine":
             return
@@ -230,6 +240,7 @@ class Config(Section):
                 raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, requirement)
 
     def _check_sharing_map(self, machine: Transmission) -> None:
+        """Refuse a load-sharing map of a machine that has no shared loads to map."""
         if self.sharing_map is None:
             return
         if machine.mesh_kinematics == "printed":
@@ -241,6 +252,7 @@ class Config(Section):
             raise ConfigError("transmission.face_gears", list(machine.face_gears), both_gears)
 
     def _check_machine(self) -> None:
+        """Check the machine against the other sections, and what must be left out without a machine."""
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
             for key in ("sharing_map", "studies", "tolerances", "search", "reproduction"):

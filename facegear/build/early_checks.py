@@ -1,4 +1,8 @@
-"""Limits of a gear's face, and early warnings about a run from geometry and statics."""
+"""Limits of a gear's face, and early warnings about a run from geometry and statics.
+
+Early findings about a run, from geometry and from statics with an estimated mesh stiffness. No contact
+analysis is made, so that all of it takes about a second.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -257,6 +261,7 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
 
 
 def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
+    """Say in one line where the teeth interfere and what then cannot be computed."""
     gap = analysis.interference
     assert gap is not None
     consequence = (
@@ -270,7 +275,9 @@ def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
 
 
 def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
-    """Why the pair cannot be rated, and where the rating leaves the range of its standard."""
+    """Return why the pair cannot be rated, and where the rating leaves the range of its standard,
+    as lines.
+    """
     if values["strength"] is None:
         return [], []
     ratio = section_contact_ratio(design)
@@ -302,7 +309,7 @@ def _stiffness(values: Mapping[str, Any]) -> float:
 
 
 def _unsolved(values: Mapping[str, Any], loads: Mapping[str, float]) -> Iterator[str]:
-    """Loads of meshes at rest, N m, that lie outside the torques of the contact analysis."""
+    """Yield lines on meshes whose load at rest, N m, lies outside the torques of the contact analysis."""
     if not loads:
         return
     low, high = values["contact"]["torques_n_m"][0], values["contact"]["torques_n_m"][-1]

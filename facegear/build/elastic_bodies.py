@@ -192,7 +192,7 @@ def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
 
 
 def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:
-    """Corners in m, anticlockwise, and for each edge whether it is held."""
+    """Return the corners (n, 2) of a section in m, anticlockwise, and for each edge whether it is held."""
     if section.corners_mm:
         config_corners = 1e-3 * np.array(section.corners_mm)
         shapes.require_simple(config_corners)
@@ -270,7 +270,7 @@ def check_bodies(teeth: ToothPair, section: Transmission) -> None:
 
 
 def _refuse_hubs_alone(section: Transmission) -> None:
-    """Raises ConfigError for the tilt of a hub where no web bends."""
+    """Refuse the tilt of a hub where no web bends."""
     single = section.single_gears.items()
     rigid = [
         f"single_gears.{side}"
@@ -285,7 +285,7 @@ def _refuse_hubs_alone(section: Transmission) -> None:
 
 
 def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Transmission) -> None:
-    """The hub's tilt carries at least the section. Raises ConfigError."""
+    """Refuse the tilt of a hub that has less inertia about a diameter than the section of its gear alone."""
     single_gear = section.single_gears.get(side)
     alone = single_gear is not None and single_gear.hub_tilt is not None
     tilt = (
@@ -304,6 +304,7 @@ def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Tran
 
 
 def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
+    """Refuse an elastic face gear that does not fit the teeth or the kinematics."""
     if section.mesh_kinematics == "printed":
         raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
     if teeth.face_gear is None:
@@ -335,7 +336,8 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
-    name, value, requirement = KEYS[error.quantity], error.value, error.allowed.replace("`", "")
+    """Raise ConfigError with the key of the section's dimension that an InvalidInput names."""
+    name, value, requirement = KEYS[error.quantity], error.value, error.requirement.replace("`", "")
     if error.quantity == THINNEST:
         name, value = _thinnest_key(body)
         requirement = f"such that the thinnest wall of the section, now {error.value} mm, is {requirement}"
@@ -345,7 +347,7 @@ def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
 
 
 def _thinnest_key(body: BodySection) -> tuple[str, object]:
-    """The key, with its value, that a user changes who has drawn a wall too thin."""
+    """Return the key, with its value, of the dimension that makes the thinnest wall."""
     if body.web is not None:
         keys = ("hub_thickness_mm", "rim_thickness_mm")
         value, thinner = min((getattr(body.web, key), key) for key in keys)

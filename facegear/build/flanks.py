@@ -50,6 +50,7 @@ def check_flanks(section: FlanksSection, key: str, face: Face, teeth: int) -> No
 
 
 def _check_places(grid: GridSection, flank_name: str, face: Face) -> None:
+    """Refuse grid lines of measured deviations that lie outside the flank."""
     for name, (low, high) in (("face_mm", face.face), ("profile_mm", face.profile)):
         line, low, high = getattr(grid, name), 1e3 * low, 1e3 * high
         slack = 1e-3 * (high - low)
@@ -64,6 +65,7 @@ def _check_places(grid: GridSection, flank_name: str, face: Face) -> None:
 
 
 def _check_nominal(grid: GridSection, flank_name: str, face: Face) -> None:
+    """Refuse a file whose nominal points or normals are not those of this flank."""
     file_values, lines = (
         np.array(grid.nominal),
         (1e-3 * np.array(line) for line in (grid.face_mm, grid.profile_mm)),

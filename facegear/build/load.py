@@ -184,6 +184,7 @@ def relative_to_cwd(name: str, folder: Path) -> str:
 
 
 def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Make file names in a config relative to the current folder, those of its studies included."""
     for *sections, key in FILE_KEYS:
         inside: Any = values
         for section in sections:
@@ -197,6 +198,7 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _locate(inside: Any, key: str, folder: Path) -> None:
+    """Make one file name of a section relative to the current folder, if the section gives it."""
     if isinstance(inside, dict) and isinstance(inside.get(key), str):
         inside[key] = relative_to_cwd(inside[key], folder)
 
@@ -210,6 +212,7 @@ def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _dicts(values: Any) -> list[dict[str, Any]]:
+    """Return the mappings of a list; nothing of any other value."""
     return [value for value in values if isinstance(value, dict)] if isinstance(values, list) else []
 
 
@@ -238,6 +241,7 @@ def merge_values(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str
 
 
 def _short(path: str | Path) -> str:
+    """Return a path relative to the current folder if it lies below it."""
     path = Path(path)
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
 

@@ -44,6 +44,7 @@ def oil_of(card: OilCard) -> Oil:
 
 
 def _law(section: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEster | FixedCoefficient:
+    """Return the pressure-viscosity law of an oil from its section."""
     if isinstance(section, PowerLaw):
         return PowerOfViscosity(section.scale, section.exponent)
     return FixedCoefficient(1e-9 * section.per_gpa) if isinstance(section, FixedLaw) else PolyolEster()
@@ -79,7 +80,7 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
 
 
 def lubrication_of(section: LubricationSection, teeth: ToothPair) -> Lubrication:
-    """Return how the flanks of the pair are lubricated.
+    """Build the lubrication of the pair's flanks (oil, roughness, friction, bulk temperature) in SI units.
 
     Parameters
     ----------
@@ -188,6 +189,7 @@ def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, 
 
 
 def _bulk(section: LubricationSection) -> GivenBulk | Cooling | BorrowedBulk:
+    """Return the source of the bulk temperature from its section."""
     bulk = section.bulk
     if bulk.temperature_c is not None:
         return GivenBulk(bulk.temperature_c)
@@ -205,6 +207,7 @@ MODELS: dict[str, Callable[[float], friction.FrictionModel]] = {
 
 
 def _model(section: FrictionSection, oil_factor: float) -> friction.FrictionModel:
+    """Return the model of the friction coefficient from its section."""
     if section.coefficient is not None:
         return friction.Constant(section.coefficient)
     if section.constants is not None:

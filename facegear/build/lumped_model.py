@@ -1,4 +1,8 @@
-"""The errors of single meshes and bodies that section `transmission` describes, in SI."""
+"""The errors of single meshes and bodies that section `transmission` describes, in SI.
+
+Lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
+`facegear.build.machine` adds the mesh stiffness as its stage has stored it.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -134,12 +138,14 @@ def error_lags(section: Transmission, shape: Layout) -> Array | None:
 
 
 def _runout(section: RunoutSection | None) -> Runout:
+    """Return a runout, m and rad, from its section; zero without one."""
     if section is None:
         return Runout()
     return Runout(1e-6 * section.eccentricity_um, float(np.radians(section.phase_deg)))
 
 
 def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, Array]:
+    """Return cumulative pitch deviations, m, by number of the body that has them."""
     return {
         body: 1e-6 * np.array(single_part.cumulative_pitch_um)
         for body, single_part in enumerate(bodies)
@@ -373,6 +379,7 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:
+    """Return the turning masses of a shaft in SI units, in the order of the chain."""
     return tuple(
         TurningMass(part.name, torsional_spring(part), part.inertia_kg_m2, part.damping_ratio)
         for part in chain

@@ -128,7 +128,9 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
 
 
 def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
-    """Torques (t,) and the ratios (t, positions, parts) at each of them."""
+    """Return torques (t,), N m, and the ratios (t, positions, parts) of friction's excitation at each of
+    them.
+    """
     names = list(EXCITATION_COLUMNS[2:])
     by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
     ratios = np.stack([rows[names].to_numpy() for _, rows in by_torque])
@@ -136,7 +138,7 @@ def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
 
 
 def _series(torques: Array, ratios: Array, torque: float) -> Array:
-    """Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
+    """Return the Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
     clipped_torque = np.clip(torque, torques[0], torques[-1])
     at = (
         ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(clipped_torque))
@@ -265,7 +267,7 @@ class MachineInputs:
         )
 
     def at_torque(self, torque_n_m: float) -> Self:
-        """Return the inputs with another torque.
+        """Return inputs of the machine whose inputs carry another torque.
 
         Parameters
         ----------
@@ -280,7 +282,7 @@ class MachineInputs:
         return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
 
     def build(self) -> Machine:
-        """Build the machine.
+        """Build the lumped machine from the config, the mesh stiffness and everything else that was computed.
 
         Returns
         -------

@@ -141,10 +141,12 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
 
 @lru_cache(maxsize=16)
 def _intern_layout(shape: Layout) -> Layout:
+    """Return the same object for equal layouts, so that caches by identity find it."""
     return shape
 
 
 def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
+    """Build the layout from section transmission and the numbers of teeth."""
     radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
     pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
@@ -220,6 +222,7 @@ def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear
 
 
 def _tilt(section: TiltSection) -> Tilt:
+    """Return inertia, stiffness and centre of a tilting gear in SI units."""
     below = 1e-3 * section.centre_below_pitch_plane_mm
     return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
 
@@ -227,7 +230,7 @@ def _tilt(section: TiltSection) -> Tilt:
 def _inertias(
     section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None
 ) -> tuple[float, float]:
-    """Mass and inertia."""
+    """Return mass, kg, and inertia, kg m^2, of a body; values given for the single body go first."""
     single_part = single_part or LIKE_ALL_PINIONS
     return (
         section.mass_kg if single_part.mass_kg is None else single_part.mass_kg,
@@ -236,6 +239,7 @@ def _inertias(
 
 
 def _pitches(pinion: PinionPlace, gear_teeth: int) -> float:
+    """Return the distribution angle of a pinion in pitches of the gear."""
     if pinion.angle_pitches is not None:
         return pinion.angle_pitches
     return float(pinion.angle_deg or 0.0) / 360.0 * gear_teeth
@@ -315,8 +319,10 @@ def torsional_spring(section: TurningMassSection) -> float:
 
 
 def _segment(section: SegmentSection) -> Segment:
+    """Return a segment of a shaft in m."""
     return Segment(1e-3 * section.length_mm, 1e-3 * section.diameter_mm, 1e-3 * section.bore_mm)
 
 
 def _elasticity(material: MaterialSection) -> Elasticity:
+    """Return Young's modulus, Pa, and Poisson's ratio of a material."""
     return Elasticity(1e9 * material.young_modulus_gpa, material.poisson_ratio)

@@ -104,6 +104,7 @@ def _require_hold(shape: Layout, name: str, single_part: SinglePinion | SingleGe
 
 
 def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> None:
+    """Refuse pinions whose teeth cannot mesh with both face gears at their angles."""
     for i in np.flatnonzero(~fit.fits):
         pinion = section.pinions[i]
         key, unit = (
@@ -144,33 +145,40 @@ PRINTED_NOTE = (
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's "
     "(docs/explanation/theory.md)"
 )
+"""Note on printed kinematics."""
 SLOW = (
     "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running, and "
     "the vibration at the orders of turns; steady states and sweeps leave them out "
     "(docs/explanation/theory.md)"
 )
+"""Note on errors that turn slowly, and which results have them."""
 EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
     "duty cycle"
 )
+"""Note on external forces; the bodies are filled in."""
 UNREPEATED = (
     "transmission.excitations: {} do not repeat with the mesh; the vibration at the orders of turns has them "
     "(dynamics/excited.csv), and motion in time refuses them"
 )
+"""Note on excitations that do not repeat with the mesh; their names are filled in."""
 WITHOUT_FRICTION = (
     "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
     "temperature and film of samples are those of the forces without it (docs/explanation/friction.md)"
 )
+"""Note on results that leave out how friction disturbs the motion; their names are filled in."""
 
 AS_ASSEMBLED = (
     "transmission.operating_pose = static: friction, loss, temperature and film take the contact of teeth as "
     "assembled (docs/explanation/poses.md)"
 )
+"""Note on friction, which takes the contact of teeth as assembled."""
 SINGLE_TEETH = (
     "{}: deviations of single teeth enter the hunting cycle, at rest and running, duty loads, and the "
     "vibration at the orders of turns (dynamics/shaft_orders.csv); steady states, sweeps, branches, samples "
     "and designs take the mean flank (docs/how_to/measured_flanks.md)"
 )
+"""Note on deviations of single teeth, and which results have them; the keys are filled in."""
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:
@@ -213,7 +221,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
 
 
 def _without_friction(values: Mapping[str, Any]) -> list[str]:
-    """Samples of tolerances and designs where friction disturbs the motion of the machine itself."""
+    """Note that samples and designs leave out how friction disturbs the motion."""
     oil = values.get("lubrication")
     if not oil or oil["friction"]["effect"] == "loss_only":
         return []
@@ -223,7 +231,7 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
 
 
 def _single_teeth(values: Mapping[str, Any]) -> list[str]:
-    """Gears with deviations of single teeth."""
+    """Note which gears have deviations of single teeth."""
     pair = values.get("tooth_pair") or {}
     keys = [
         f"tooth_pair.{gear}.flanks"
@@ -237,7 +245,9 @@ def _single_teeth(values: Mapping[str, Any]) -> list[str]:
 
 
 def _preloads(values: Mapping[str, Any]) -> list[str]:
-    """Pinions and meshes that errors press together at rest: bearings and teeth give, and carry that load."""
+    """Note pinions and meshes that errors press together at rest: bearings and teeth give, and carry that
+    load.
+    """
     if "tooth_pair" not in values or values["transmission"].get("backlash_um") is None:
         return []
     lines = preloads(*lumped_sections(values["transmission"], values["tooth_pair"]))
@@ -245,7 +255,7 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
 
 
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:
-    """Bodies with an external force."""
+    """Note which bodies have an external force."""
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
     bodies = [
         name for name, single_part in singles.items() if any((single_part.get("force_n") or {}).values())
@@ -254,7 +264,7 @@ def _pushes(transmission: Mapping[str, Any]) -> list[str]:
 
 
 def _unrepeated(values: Mapping[str, Any]) -> list[str]:
-    """Periodic torques that no mesh harmonic has."""
+    """Note which periodic torques are at no harmonic of the mesh frequency."""
     transmission = values["transmission"]
     if not transmission["excitations"]:
         return []
@@ -269,7 +279,7 @@ def _unrepeated(values: Mapping[str, Any]) -> list[str]:
 
 
 def _sums(values: Mapping[str, Any]) -> list[str]:
-    """Numbers that several causes of the tolerances move: as in a chain of tolerances, or by mistake."""
+    """Note keys that several causes of the tolerances move, as in a chain of tolerances or by mistake."""
     causes = (values.get("tolerances") or {}).get("causes", ())
     movers: dict[str, list[str]] = {}
     for cause in causes:
@@ -301,6 +311,7 @@ def turns(transmission: Mapping[str, Any]) -> bool:
 
 
 def _backlash(values: Mapping[str, Any]) -> list[str]:
+    """Note that the given backlash differs from the teeth's own."""
     backlash_um = values["transmission"].get("backlash_um")
     if backlash_um is None or values.get("tooth_pair", {}).get("pinion") is None:
         return []

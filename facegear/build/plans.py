@@ -83,6 +83,7 @@ def contact_plan(section: Contact) -> ContactPlan:
 
 
 def _number(teeth: int | str) -> int | None:
+    """Return the number of a tooth; None for `all`."""
     return teeth if isinstance(teeth, int) else None
 
 

@@ -45,6 +45,7 @@ def reference() -> str:
 
 
 def _row(*cells: str) -> str:
+    """Return a row of a Markdown table from its cells."""
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
 
 
@@ -93,13 +94,14 @@ def _options(field: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A field with its reference followed."""
+    """Return the schema of a field, its reference to a definition replaced by the definition."""
     if "$ref" not in field:
         return field
     return schema["$defs"][field["$ref"].rsplit("/", 1)[-1]]
 
 
 def _default(field: Mapping[str, Any], is_required: bool) -> str:
+    """Return the default of a key as text."""
     if is_required:
         return "required"
     value = field.get("default")
@@ -107,10 +109,12 @@ def _default(field: Mapping[str, Any], is_required: bool) -> str:
 
 
 def _allowed_values(schema: Mapping[str, Any], options: list[Mapping[str, Any]]) -> str:
+    """Return the allowed values of a key in words, all forms joined by `or`."""
     return " or ".join(dict.fromkeys(_kind(schema, option) for option in options))
 
 
 def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
+    """Return one allowed form of a value in words: type, bounds, choices."""
     if "enum" in option or "const" in option:
         return ", ".join(f"`{value}`" for value in option.get("enum", [option.get("const")]))
     kind = option.get("type", "any value")
@@ -126,6 +130,7 @@ def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
 
 
 def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:
+    """Return the bounds of a number or a length in words."""
     limits = [
         f"{sign} {option[key]:g}"
         for key, sign in (

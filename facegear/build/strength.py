@@ -75,7 +75,7 @@ def limits_of(card: Card) -> MaterialCard:
 
 
 def _life(limits: Limits) -> Life:
-    """Life factors over cycles."""
+    """Return the life factors over cycles of a material card's limits."""
     cycles, factors = zip(*limits.life, strict=True)
     return Life(cycles, factors)
 

@@ -161,5 +161,6 @@ def check_search(
 def _variable(
     pair: ToothPair, machine: Transmission, lubrication: LubricationSection | None = None
 ) -> dict[str, Any]:
+    """Return the keys that samples and studies may change, with their values."""
     oil = lubrication.model_dump(mode="json") if lubrication is not None else None
     return variable_part(machine.model_dump(mode="json"), pair.model_dump(mode="json"), 0.0, oil)

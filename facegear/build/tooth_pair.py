@@ -69,14 +69,17 @@ class ToothPair(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "ToothPair":
+        """Check numbers of teeth and bodies; all mistakes are reported together."""
         require_all(self._check_teeth, self._check_bodies)
         return self
 
     def _check_teeth(self) -> None:
+        """Refuse a face gear that has no more teeth than the pinion."""
         if self.face_gear_teeth <= self.pinion_teeth:
             refuse("face_gear_teeth", self.face_gear_teeth, f"more than the pinion's {self.pinion_teeth}")
 
     def _check_bodies(self) -> None:
+        """Refuse a pair of which only some of pinion, face gear and shaper are given."""
         bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
         absent_bodies = [name for name, body in bodies.items() if body is None]
         if len(absent_bodies) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
@@ -163,7 +166,7 @@ def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, 
 
 
 def _nominal(section: ToothPair) -> PairDesign:
-    """The pair with all flanks as designed."""
+    """Return the design of a pair with all flanks as designed, without measured deviations."""
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:
@@ -265,10 +268,12 @@ def pair(section: ToothPair) -> Pair:
 
 
 def _material(section: MaterialSection) -> Material:
+    """Return a material in SI units."""
     return Material(1e9 * section.young_modulus_gpa, section.poisson_ratio)
 
 
 def _modifications(section: GearModificationsSection) -> GearModifications:
+    """Return the face gear's modifications in m."""
     return GearModifications(
         tip_relief=_relief(section.tip_relief),
         root_relief=_relief(section.root_relief),
@@ -282,6 +287,7 @@ def _modifications(section: GearModificationsSection) -> GearModifications:
 
 
 def _relief(section: ReliefSection) -> Relief:
+    """Return amount, start and length of a relief in m."""
     return Relief(1e-6 * section.amount_um, 1e-3 * section.start_mm, 1e-3 * section.length_mm)
 
 

@@ -129,6 +129,7 @@ def pressure_arrays(
 
 
 def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
+    """Return torque, position, tooth, node and force of every loaded basis function."""
     spots = [(result, spot) for result in results for spot in result.spots]
     count = [spot.hats.size for _, spot in spots]
     return {
@@ -242,11 +243,13 @@ def _solve_model(
     plan: ContactPlan,
     known_contact: KnownContact | None,
 ) -> tuple[list[LoadedPosition], FlankPressure]:
+    """Solve contact of one flank at all positions and torques, with pressures."""
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known_contact)
     return results, flank_pressure(results, model.flanks, materials)
 
 
 ONE_FLANK = np.zeros((2, 2), dtype=int)
+"""Numbers of the contact that each flank of each gear uses where all flanks are alike: always 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,6 +346,7 @@ def met_contacts(
 def _solve_assembly(
     model: ContactModel, errors: AssemblyErrors, materials: tuple[Material, Material], plan: ContactPlan
 ) -> PosedContact:
+    """Solve contact of a pair with assembly errors, with its tables and arrays."""
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
     pressures = flank_pressure(results, model.flanks, materials)
     table = ltca_table(results, pressures)

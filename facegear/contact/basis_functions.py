@@ -38,7 +38,7 @@ class FacingPoints(NamedTuple):
     area: Array
 
     def part(self, rows: slice) -> "FacingPoints":
-        """Return some of the points.
+        """Return the points in a range of rows.
 
         Parameters
         ----------
@@ -161,7 +161,7 @@ def functions_within(facing_pairs: FacingPairs, cover: Cover, limit: float) -> B
 
 
 def chosen_rows(rows: Rows, keep: Mask) -> Rows:
-    """Choose some of sparse rows.
+    """Return some rows of a sparse matrix stored by rows.
 
     Parameters
     ----------

@@ -1,4 +1,10 @@
-"""Loads of a pair of teeth that may act: points that can touch, gaps, lever arms and influence."""
+"""Loads of a pair of teeth that may act: points that can touch, gaps, lever arms and influence.
+
+Points at which a pair of teeth can touch, under the basis functions of a flank or along a tip edge. Off the
+line of action an edge meets the opposite flank at an angle: the gap is least exactly on the edge and grows by
+micrometres within a node distance, so that averages over the surface beside it come too late. Edges therefore
+carry loads of their own: basis functions along the edge with gaps taken on it.
+"""
 
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -63,7 +69,7 @@ class Candidates:
         return self._load_cache[side, is_refined]
 
     def only(self, keep: Mask) -> "Candidates":
-        """Return some of the loads.
+        """Return the candidates that a mask marks.
 
         Parameters
         ----------

@@ -58,7 +58,7 @@ class PinionSurface:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Refined lattice."""
+        """Number of nodes along profile and face of the refined lattice."""
         return self.lattice.shape
 
     def exact(self, at: Array) -> SurfacePoints:
@@ -89,26 +89,32 @@ class PinionSurface:
 
     @cached_property
     def pressure(self) -> Basis:
+        """Basis of pressures on the contact grid."""
         return pressure_basis(self.shape)
 
     @cached_property
     def at(self) -> Array:
+        """Position of each integration point on the contact grid (points, 2), in cells."""
         return cell_points(self.pressure)
 
     @cached_property
     def points(self) -> SurfacePoints:
+        """Exact surface points with normals at the integration points."""
         return self.exact(self.at)
 
     @cached_property
     def area(self) -> Array:
+        """Area of each cell of the contact grid, m^2."""
         return cell_areas(self.nodes.reshape(*self.shape, 3))
 
     @cached_property
     def lever_arm(self) -> Array:
+        """Lever arm of each point's normal about the pinion's axis, m."""
         return self.points.lever_arm
 
     @cached_property
     def hats(self) -> sp.csr_matrix:
+        """Values of the basis functions at the integration points, sparse (points, nodes)."""
         return hat_values(self.pressure)
 
     @cached_property
@@ -124,11 +130,12 @@ class PinionSurface:
 
     @property
     def width(self) -> float:
-        """Along the tooth, m."""
+        """Width of the flank along the tooth, m."""
         return float(np.ptp(self.side.v[0]))
 
     @cached_property
     def element(self) -> Integers:
+        """Number of the finite element's face below each cell of the contact grid."""
         rows, columns = (np.arange(count - 1) for count in self.shape)
         row, column = (
             part // (2 * cut) for part, cut in zip((rows, columns), self.lattice.factors, strict=True)
@@ -188,6 +195,7 @@ class PinionSurface:
 
     @cached_property
     def cell(self) -> Integers:
+        """Number of the cell of each integration point."""
         row, column = np.floor(self.at).astype(np.int64).T
         return row * (self.shape[1] - 1) + column
 
@@ -218,6 +226,7 @@ class PinionSurface:
 
 @lru_cache(maxsize=8)
 def _between_probes(lattice: Lattice) -> sp.csr_matrix:
+    """Interpolation from coarse nodes of a lattice to all its nodes."""
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     return interpolation(nodes, lattice.coarse)
 
@@ -286,6 +295,7 @@ class FlankPair:
 
     @property
     def design(self) -> PairDesign:
+        """Design of the pair of gears."""
         return self.pinion.design
 
 

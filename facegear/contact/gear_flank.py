@@ -119,6 +119,7 @@ BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], FeTooth]] = {
     "pinion": pinion_tooth,
     "face_gear": gear_tooth,
 }
+"""Function that builds the finite elements of a tooth, by body."""
 
 
 def gear_flank(

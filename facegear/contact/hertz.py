@@ -22,6 +22,7 @@ SLENDEREST, ROUNDEST = 1e-6, 1.0 - 1e-6
 """Ratios of semi-axes between which the ratio of an ellipse is searched."""
 
 HALVINGS = 60
+"""Number of bisections; 60 halve any interval to the rounding of a double."""
 
 STEPS = 8
 """Number of steps of the fixed-point iteration of pressure and half-width, each of which gains more than a
@@ -115,6 +116,7 @@ def strip_pressure(
 
 
 def _half_width(load: Array, pressure: Array) -> Array:
+    """Return the half width, m, of a Hertzian line contact from load, N/m, and pressure, Pa."""
     return 2 * load / (pi * np.where(pressure == 0, 1.0, pressure))
 
 

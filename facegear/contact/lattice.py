@@ -36,7 +36,7 @@ class Lattice:
 
     @property
     def factors(self) -> Integers:
-        """Refined nodes a coarse one, both ways."""
+        """Number of refined cells in a coarse one, along profile and face."""
         return np.array([self.refinement.profile, self.refinement.width])
 
     @property
@@ -102,6 +102,7 @@ class Lattice:
 
 @lru_cache(maxsize=8)
 def _interpolation_rows(lattice: Lattice) -> Rows:
+    """Return the interpolation from coarse nodes as arrays of a sparse matrix for the kernel."""
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     matrix = interpolation(nodes, lattice.coarse, lattice.linear)
     matrix.eliminate_zeros()

@@ -178,6 +178,7 @@ def unloaded_lines(
 
 
 def _min_roll(design: PairDesign) -> float:
+    """Return the smallest roll angle, rad, of the involute: at the fillet, not below the base circle."""
     return max(pinion.junction_roll(design), 0.0)
 
 
@@ -229,7 +230,9 @@ def _sampled_gaps(
 
 
 def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array) -> Array:
-    """Gaps (p, k, n) at squares (k, n) or (p, k, n) of the roll, to the gear's flank continued."""
+    """Return the gaps (p, k, n), m, to the gear's flank, extended beyond its ends, at squares of the roll
+    angle.
+    """
     points = flank_points(design, np.sqrt(np.maximum(roll_squared, 0.0)), y)
     flat = (*roll_squared.shape[:-2], -1, 3)
     flat_points = SurfacePoints(points.position.reshape(flat), points.normal.reshape(flat))

@@ -28,7 +28,7 @@ from facegear.progress import Progress
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import pinion_angle
-from facegear.teeth.unloaded import unloaded_contact, unloaded_motion
+from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +128,7 @@ class ContactModel:
 
     @property
     def design(self) -> PairDesign:
+        """Design of the pair of gears."""
         return self.flanks.design
 
     def with_assembly(self, errors: AssemblyErrors) -> "ContactModel":
@@ -288,6 +289,8 @@ class _PositionSearch:
         margin, width, near = self.margin(row), WIDTH, np.zeros((0, 0), bool)
         if self.known_contact is not None:
             width, near = KNOWN_WIDTH, self.known_contact.near[row, np.searchsorted(PAIRS, teeth)]
+        # The kernel counts in parts of the limit, which a smaller margin makes smaller: the factor keeps the
+        # same rotation.
         return SearchStrip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
 
     @cached_property
@@ -310,6 +313,7 @@ class _PairAtPosition:
 
     @property
     def base_radius(self) -> float:
+        """Base radius of the pinion, m."""
         return self.position_search.model.design.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:

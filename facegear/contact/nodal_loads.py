@@ -1,4 +1,10 @@
-"""Forces of all contacts on the nodes of both surfaces, and their resultants on the bodies."""
+"""Forces of all contacts on the nodes of both surfaces, and their resultants on the bodies.
+
+Forces and moment of a mesh on its bodies, from the touching loads, averaged over the mesh cycle. They are the
+sum of f . gap_p over all loads, gap_p the derivative of their gaps by a motion p of the pinion: each load
+acts along the normal of the pinion where it is. The derivative of the whole energy of the contact has f . C_p
+f / 2 as well, as other parts of the teeth give way differently.
+"""
 
 from collections.abc import Sequence
 
@@ -95,6 +101,7 @@ def loads_by_tooth(
 
 
 REACTION_COLUMNS = ("torque_n_m", "tangential_n", "axial_n", "overturning_n_m")
+"""Columns of the table of contact reactions on the pinion; units stand in the names."""
 
 
 def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:
@@ -121,6 +128,7 @@ def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]
 
 
 def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
+    """Return tangential force, axial force and overturning moment (3,), N and N m, of all loads."""
     parts = [_of_spot(surface, result.position, spot) for spot in result.spots]
     return np.sum(parts, axis=0) if parts else np.zeros(3)
 

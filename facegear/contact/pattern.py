@@ -31,6 +31,7 @@ LTCA_COLUMNS = (
     "kkt_residual",
     "torque_residual",
 )
+"""Columns of table `ltca`, a row for each torque and position; units stand in the names."""
 LTCA_FINITE = tuple(
     name for name in LTCA_COLUMNS if name not in ("k_average_n_per_m", "pressure_mpa", "pressure_error_mpa")
 )

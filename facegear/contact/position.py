@@ -19,8 +19,11 @@ It gives the approach that the candidates of the first solution must cover; late
 solutions."""
 
 MARGIN = 1.15
+"""Factor on the expected rotation up to which candidates are searched. Results do not depend on it: where the
+rotation is larger the search is repeated."""
 
 ENLARGEMENTS = 12
+"""Largest number of searches at a position; more means that the teeth cannot touch. Free choice."""
 
 UNKNOWN_REFERENCE = 0.01
 """Fraction of the approach by which unloaded teeth may overlap until their average stiffness is not given.
@@ -37,13 +40,19 @@ class PairAtPosition(Protocol):
     """
 
     @property
-    def position(self) -> float: ...
+    def position(self) -> float:
+        """Position in the pitch, in pitches."""
+        ...
 
     @property
-    def unloaded_error(self) -> float: ...
+    def unloaded_error(self) -> float:
+        """Transmission error without load at this position, m."""
+        ...
 
     @property
-    def base_radius(self) -> float: ...
+    def base_radius(self) -> float:
+        """Base radius of the pinion, m."""
+        ...
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact of what a rotation of the pinion would close.
@@ -123,6 +132,7 @@ class LoadedPosition:
 
     @property
     def pairs_in_contact(self) -> int:
+        """Number of tooth pairs that carry load."""
         return int(np.count_nonzero(self.load_share))
 
 
@@ -207,11 +217,14 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
     for _ in range(ENLARGEMENTS):
         contact = pair.contact(loads, limit)
         if not contact.candidates:
+            # No gap closes, so that there is no rotation to go by: a large factor finds contact soon.
             limit *= 4.0
             continue
         if not contact.forward:
             raise NotConverged("contact", place_text(loads[0]), "no candidate point can carry the torque")
         if contact.rotation[0] > limit:
+            # Candidates beyond the limit were left out. They could only have held the pinion back, so that
+            # this rotation is an upper bound, and a search up to it misses none.
             limit = MARGIN * float(contact.rotation[0])
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):

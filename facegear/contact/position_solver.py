@@ -1,4 +1,11 @@
-"""The compiled solver for the contact of all pairs of teeth at a position, under all torques."""
+"""The compiled solver for the contact of all pairs of teeth at a position, under all torques.
+
+Frictionless unilateral contact of two condensed bodies turned against each other by a torque. Find forces f
+>= 0 and the rotation r with gap + C f - r a >= 0, f . (gap + C f - r a) = 0, a . f = torque, a the lever
+arms: the optimality conditions of a convex quadratic programme, hence one solution for a positive definite C.
+A primal-dual active set (semismooth Newton; Hintermueller et al. 2003) finishes in a few steps; should it
+cycle, a single-exchange active set, which lowers the energy at each step, finishes the work.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -87,7 +94,7 @@ class ContactSolution:
 
     @property
     def active(self) -> Mask:
-        """Points in contact (n,)."""
+        """Mask of the points in contact (n,), those with a force."""
         return self.force > 0.0
 
 

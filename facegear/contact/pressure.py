@@ -5,6 +5,10 @@ that a plane across the pinion's axis carries does not. So the pressure is that 
 and the exact relative curvature. Where a tip edge or an end of the face is closer than the strip's
 half-width, pressure has no limit as a mesh is refined, and only the line load is given. Load in a fillet
 lies beside no contact line and is left out.
+
+Contact in fillets kept apart from that of the flanks. Where a tip runs into the fillet of the other gear, a
+plane across the pinion's axis carries load at two places: along the contact line of the flanks, and in the
+fillet, where an edge presses and pressure has no limit as a mesh is refined.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,6 +29,7 @@ from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.surfaces import flank_points
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
+"""Index in EDGES of the place where a plane carries its load."""
 
 KERNEL = np.array([1.0, 2.0, 1.0]) / 4
 """Weights of neighbouring planes, over an element of the face: forces alternate between its nodes."""
@@ -198,7 +203,7 @@ def flank_pressure(
 
 
 def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
-    """Number of each line by position and tooth."""
+    """Number the contact lines by position and tooth."""
     return {pair: row for row, pair in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
 
 
@@ -337,6 +342,7 @@ def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
 
 
 def _nearest_edge(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
+    """Return for each plane the edge of the flank that its contact reaches, an index of EDGES."""
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )

@@ -21,6 +21,7 @@ PLANES = 4.0
 MAX_CUTS = 16
 """Largest number of cuts along the face of the elements under the flank."""
 ROUNDING = 1e-9
+"""Part of an element by which a number of elements may be off by rounding, dimensionless."""
 DEEPEST = 2.0
 """Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
 ROUNDINGS = {"pinion": "rounding of the rack's tip", "face_gear": "rounding of the shaper's tip"}
@@ -139,6 +140,7 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
+    """Return the number of elements along the face width, not rounded."""
     return (design.face_gear.outer_radius - design.face_gear.inner_radius) / sizes.width
 
 

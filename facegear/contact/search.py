@@ -175,6 +175,7 @@ def _find_facing_points(
     )
     beside = np.where(number < flank_count, BESIDE * design.module, 0.0)
     on_gear, gap = gear.coordinates(hits, options.fillet, beside), hits.gap
+    # A fillet that takes no part must not close at any rotation.
     if not options.fillet:
         gap = np.where(pair.pinion.lattice.in_fillet(points.at[number]), np.inf, gap)
     feet = _feet(pair, placements, options)
@@ -210,6 +211,8 @@ def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integer
     near = [np.zeros(0, np.int64)] * len(gaps)
     rows = np.flatnonzero(close.any(axis=1))
     finite_gaps = np.where(np.isfinite(gaps[rows]), gaps[rows], np.nan)
+    # Exact separations are dear, interpolated ones are not: only elements that probes found close are looked
+    # at node by node. A node without a finite gap counts as near, as its neighbours may touch.
     nodes = ~(pinion.between_probes @ finite_gaps.T >= depth)
     cells = _beside(nodes.T.reshape(-1, *pinion.shape)).reshape(rows.size, pinion.element.size)
     for row, is_near in zip(rows.tolist(), cells & close[rows][:, pinion.element], strict=True):

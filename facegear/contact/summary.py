@@ -32,12 +32,14 @@ COLUMNS = (
     "fillet_share",
     "interference_um",
 )
+"""Columns of table `by_torque`; units stand in the names."""
 
 BY_FLANK_COLUMNS = (
     *("gear", "flank", "offset_um", "shaft_angle_error_deg", "axial_shift_um"),
     *COLUMNS,
     "path_radius_mm",
 )
+"""Columns of table `by_flank`: the flank with its assembly errors, and COLUMNS."""
 
 
 def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
@@ -192,6 +194,7 @@ def path_by_position(pressure: Arrays) -> pd.DataFrame:
 
 
 def _centroids(pressure: Arrays, keys: list[str]) -> pd.DataFrame:
+    """Return the axial centre of the forces, mm, for each combination of `keys`."""
     force = pressure["force_n"]
     moment = force * 1e3 * pressure["point_m"][:, 1][pressure["node"]]
     frame = pd.DataFrame({key: pressure[key] for key in keys} | {"force": force, "moment": moment})

@@ -24,7 +24,7 @@ from facegear.teeth.design import DeviationGrid, PairDesign
 from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
 from facegear.teeth.opposite import tip_edge_feet
 from facegear.teeth.placement import pinion_angle
-from facegear.teeth.unloaded import unloaded_motion
+from facegear.teeth.unloaded_contact import unloaded_motion
 
 Teeth = Sequence[DeviationGrid | None]
 """Deviation of each tooth's flank from the mean of its gear, by the number of the tooth; None without."""

@@ -37,6 +37,7 @@ class Case:
 
     @cached_property
     def _values(self) -> dict[str, Any]:
+        """Plain values of the config, complete with derived keys."""
         return resolved_values(self.config)
 
     def with_values(self, changes: Mapping[str, Any]) -> Self:
@@ -64,7 +65,9 @@ class Case:
         return self._with_changes("with_values", changes)
 
     def _torques(self, torques: float | Iterable[float] | None) -> dict[str, Any]:
-        """Changed keys of a contact analysis at other torques (N m on the pinion); none for None."""
+        """Return the changes of a contact analysis's keys for other torques, N m on the pinion; none for
+        None.
+        """
         if torques is None:
             return {}
         changes: dict[str, Any] = {
@@ -76,7 +79,7 @@ class Case:
         return changes
 
     def _require_section(self, section: str) -> Mapping[str, Any]:
-        """A section of HOLDS. Raises ConfigError where the config leaves it out."""
+        """Return a section of HOLDS as plain values; raise ConfigError where the config leaves it out."""
         values: Mapping[str, Any] | None = self._values[section]
         if values is None:
             raise ConfigError(section, None, f"a section of the config: {HOLDS[section]}")
@@ -92,6 +95,7 @@ class Case:
         return self._with_changes("branches", {"branches": {**section, **inner}})
 
     def _with_changes(self, label: str, changes: Mapping[str, Any]) -> Self:
+        """Return a case with a changed config that shares this one's store; itself without changes."""
         if not changes:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), label)
@@ -99,6 +103,7 @@ class Case:
 
     @cached_property
     def _chain(self) -> Chain:
+        """Chain of stages that computes the answers of this config."""
         return Chain(self._values, self.store)
 
 

@@ -52,7 +52,7 @@ def report(self: Case, path: str | Path, on_stage: Callable[[str, str], None] | 
     MissingExtra
         Where a library of the report is not installed.
     """
-    return _whole_case(self, on_stage).write_report(path)
+    return whole_case(self, on_stage).write_report(path)
 
 
 def summary(self: Case) -> str:
@@ -90,7 +90,7 @@ def run(self: Case, folder: str | Path, on_stage: Callable[[str, str], None] | N
     Path
         Path of the report. Raises what `report` raises.
     """
-    return _whole_case(self, on_stage).write(folder)
+    return whole_case(self, on_stage).write(folder)
 
 
 def figures(
@@ -123,7 +123,7 @@ def figures(
     FacegearError
         If the case has no figure of such a name.
     """
-    return _whole_case(self, on_stage).write_figures(folder, names, suffix)
+    return whole_case(self, on_stage).write_figures(folder, names, suffix)
 
 
 def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
@@ -158,7 +158,7 @@ def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None
         from facegear.exchange.fmu import write_fmu
 
         with keys_named():
-            return write_fmu(path, _machine(self), self._values["dynamics"]["speed_rpm"])
+            return write_fmu(path, machine_of(self), self._values["dynamics"]["speed_rpm"])
     if ending == ".glb":
         return _scene(self, path)
     if ending == ".csv":
@@ -166,12 +166,13 @@ def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None
     if ending == ".rexs":
         return _gear_unit(self, path)
     with extras_named():
-        from facegear.pipeline.stages.teeth import export  # finite elements, an extra
+        from facegear.pipeline.stages.tooth_bodies import export  # finite elements, an extra
 
         return export(path, body, teeth, self.config.tooth_pair, self.config.case)
 
 
 def _scene(self: Case, path: Path) -> Path:
+    """Write all gears as a glTF scene; without a machine one pinion and one gear."""
     from facegear.exchange.gltf import write_gltf  # a library of the extra `exchange`
 
     design, machine = pair_design(self.config.tooth_pair), self.config.transmission
@@ -188,16 +189,35 @@ def _scene(self: Case, path: Path) -> Path:
 
 
 def _gear_unit(self: Case, path: Path) -> Path:
+    """Write shafts, pinions, bearings and materials as REXS."""
     date = datetime.now(UTC).isoformat(timespec="seconds")
     return write_rexs(path, gear_unit(self.config), date, version("facegear"))
 
 
-def _machine(self: Case) -> "Machine":
-    """The lumped machine as the dynamics take it. Raises ConfigError without a transmission."""
+def machine_of(self: Case) -> "Machine":
+    """Build the lumped machine as the dynamics take it.
+
+    Returns
+    -------
+    Machine
+        The machine. Raises ConfigError where the config has no transmission.
+    """
     return machine_inputs(self._chain.arguments("dynamics_response")).build()
 
 
-def _whole_case(self: Case, on_stage: Callable[[str, str], None] | None) -> "WholeCase":
+def whole_case(self: Case, on_stage: Callable[[str, str], None] | None = None) -> "WholeCase":
+    """Return everything that is asked of the case, computed or read when it is needed.
+
+    Parameters
+    ----------
+    on_stage : callable or None
+        Called with the name of each stage and with what is done about it.
+
+    Returns
+    -------
+    WholeCase
+        The whole case. Raises MissingExtra without the packages of the extra `workflow`.
+    """
     from facegear.pipeline.results.whole_case import WholeCase  # the report needs the extra `workflow`
 
     chain = Chain(self._values, self.store, expand_cases(self.config))

@@ -33,7 +33,7 @@ def flank_table(section: ToothPair) -> pd.DataFrame:
     -------
     pd.DataFrame
         One row for each grid point of a flank, columns as COLUMNS; points in mm of tooth 1, see
-        `geometry.design`.
+        `facegear.teeth.design`.
 
     Raises
     ------
@@ -45,6 +45,7 @@ def flank_table(section: ToothPair) -> pd.DataFrame:
 
 
 def _rows(design: PairDesign, body: Body, side: str) -> pd.DataFrame:
+    """Return the nominal points of one flank as rows of a table."""
     face = flank_face(design, body)
     deepest = (
         float(flank_depth(design)(design.face_gear.inner_radius)) if body == "face_gear" else face.profile[1]

@@ -28,10 +28,13 @@ SLOWEST_RPM = 1.0
 KERNELS = "facegear._kernels", "src"
 """Package and folder of the sources of the motion."""
 INCLUDES = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+"""Header that a C++ source includes by its path below the kernels' sources."""
 IDENTIFIER = "facegear_machine"
+"""Name of the FMU's library, as FMI asks for one."""
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"}}
 """Units by their exponents of base units; rpm has a factor."""
 LETTERS = "xyz"
+"""Directions of the forces on bearings."""
 COUPLING = ("dampers", "gyroscopic", "circulatory", "centrifugal")
 """Matrices that couple coordinates, in the order of the integrator's argument."""
 SERIES = ("error", "load", "rubbing_ratios", "fourier", "factor")
@@ -60,11 +63,26 @@ class Variable:
 
 
 def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
-    """Write the FMU; it starts at rest under the machine's torques. Returns the path.
+    """Write the machine as an FMU for co-simulation (FMI 3.0) that starts at rest under the machine's
+    torques.
 
-    Inputs, held through a step: speed of the pinions, torque on each body; the rigid rotation of all bodies
-    together is left out, so that only their balance acts. Outputs: deflection (m) and elastic force (N) of
-    every contact, force of every body on its bearing (N).
+    Inputs, which are held through a step: speed of the pinions, rpm, and torque on each body, N m. The rigid
+    rotation of all bodies together is left out, so that only the balance of the torques acts. Outputs:
+    deflection, m, and elastic force, N, of every contact, and force of every body on its bearing, N.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions at the start, rpm.
+
+    Returns
+    -------
+    Path
+        The path.
     """
     path, model = Path(path), build_model(machine)
     header = _header(model, speed_rpm)
@@ -141,10 +159,21 @@ def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
 
 
 def unique_words(names: Sequence[str]) -> list[str]:
-    """Return each name with `_` for all but letters and digits; words that become equal are numbered.
+    """Turn names into identifiers: `_` replaces all but letters and digits, and equal identifiers are
+    numbered.
 
     FMI asks for unique names of variables. The first of equal words stays as it is; the others end in the
     smallest number from 2 on that no other variable has.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of variables, such as `deflection_left input/upper`.
+
+    Returns
+    -------
+    list of str
+        One identifier for each name, in the same order.
     """
     words = [re.sub(r"\W+", "_", name) for name in names]
     used_words = set(words)
@@ -222,12 +251,13 @@ def _header(model: Model, speed_rpm: float) -> str:
 
 
 def _function(name: str, values: AnyArray) -> str:
+    """Return a C++ function that returns an array as a vector."""
     kind = "Index" if values.dtype.kind == "i" else "double"
     return f"inline std::vector<{kind}> {name}() {{ return {_list(values)}; }}"
 
 
 def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill facegear::motion::System."""
+    """Yield C++ statements that fill facegear::motion::System with the numbers of the machine."""
     rows, n = numbers["jacobian"].shape
     contacts = rows - 3 * numbers["ring_stiffness"].size
     yield f"s.n = {n}, s.m = {rows}, s.contacts = {contacts};"
@@ -241,7 +271,7 @@ def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill one of the laws of facegear::motion."""
+    """Yield C++ statements that fill one of the force laws of facegear::motion."""
     for name, values in numbers.items():
         if name == "table":
             kinds, levels, harmonics = values.shape[:3]
@@ -253,19 +283,24 @@ def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _series(values: AnyArray) -> str:
-    """Fourier series (kinds, 2, harmonics + 1) as facegear::motion::FourierRows."""
+    """Return Fourier series (kinds, 2, harmonics + 1) as C++ text that initialises
+    facegear::motion::FourierRows.
+    """
     return f"{{{values.shape[0]}, {values.shape[2]}, {_list(values)}}}"
 
 
 def _value(value: Any) -> str:
+    """Return an array or a number as C++ text."""
     return _list(value) if isinstance(value, np.ndarray) else _text_of(value)
 
 
 def _list(values: AnyArray) -> str:
+    """Return an array as a C++ initialiser list, in row-major order."""
     return "{" + ", ".join(_text_of(value) for value in values.ravel().tolist()) + "}"
 
 
 def _text_of(value: float | bool) -> str:
+    """Return a number or a boolean as C++ text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value).replace("inf", "infinity")
@@ -277,6 +312,7 @@ def _mesh_period(machine: Machine, speed_rpm: float) -> float:
 
 
 def _description(variables: Sequence[Variable], mesh_period: float, token: str) -> str:
+    """Return `modelDescription.xml`: variables, units, default experiment and structure."""
     root = Xml.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -324,6 +360,7 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
 
 
 def _build_description() -> str:
+    """Return `buildDescription.xml`: how the sources of the FMU are compiled."""
     root = Xml.Element("fmiBuildDescription", fmiVersion="3.0")
     build = Xml.SubElement(root, "BuildConfiguration", modelIdentifier=IDENTIFIER)
     sources = Xml.SubElement(build, "SourceFileSet", language="C++17")
@@ -333,5 +370,6 @@ def _build_description() -> str:
 
 
 def _text(root: Xml.Element) -> str:
+    """Return an XML tree as indented text with its declaration."""
     Xml.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="unicode") + "\n"

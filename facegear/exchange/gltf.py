@@ -18,6 +18,7 @@ from facegear.teeth.solids import solid, triangles
 PROFILE, WIDTH = 9, 5
 """Points of every patch along the profile and the width."""
 COLOURS: dict[Body, tuple[int, ...]] = {"pinion": (208, 140, 60, 255), "face_gear": (110, 130, 150, 255)}
+"""Colour (red, green, blue, opacity; 0 to 255) of each body."""
 UPWARDS = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 """From our frame, whose z is the gears' axis, to that of glTF, whose y points upwards."""
 
@@ -25,10 +26,29 @@ UPWARDS = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0,
 def write_gltf(
     path: str | Path, design: PairDesign, pinions: Sequence[tuple[str, float]], sides: Sequence[str]
 ) -> Path:
-    """Write whole gears, modifications included, in mesh; returns the path.
+    """Write whole gears in mesh, modifications included, as a binary glTF scene; assembly errors are left
+    out.
 
-    `pinions`: name and distribution angle (rad) of each; `sides`: of upper, lower, the face gears. Assembly
-    errors are left out. Raises MissingExtra where trimesh is not installed.
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    design : PairDesign
+        Pair of gears.
+    pinions : sequence of (str, float)
+        Name and distribution angle, rad, of each pinion.
+    sides : sequence of str
+        Face gears to write: `upper`, `lower` or both.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    MissingExtra
+        If trimesh is not installed.
     """
     with extras_named():
         import trimesh  # a library of the extra `exchange`
@@ -51,14 +71,27 @@ def write_gltf(
 
 
 def _corners(design: PairDesign, body: Body) -> Array:
-    """Corners of the triangles of a body, three rows each, in metres."""
+    """Return the corners of a body's triangles (3 n, 3), three rows a triangle, in m."""
     return triangles(solid(design, body, None, PROFILE, WIDTH)).reshape(-1, 3)
 
 
 def pinion_transform(design: PairDesign, angle: float) -> Array:
-    """Matrix (4, 4) from the pinion's body frame to that of the upper gear, at a distribution angle (rad).
+    """Return the transform from the pinion's body frame to the frame of the upper gear.
 
-    The pinion stands as the teeth of the gear at that angle ask for: as if the gear had turned by it.
+    The pinion is rotated about its own axis so that it meshes at this angle: as if the gear had turned by the
+    angle.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    angle : float
+        Distribution angle of the pinion about the gear's axis, rad.
+
+    Returns
+    -------
+    (4, 4) array
+        Homogeneous matrix; rotations dimensionless, translations in m.
     """
     teeth = design.pinion.teeth
     transform = _about_axis(angle)
@@ -67,9 +100,22 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
 
 
 def gear_transform(design: PairDesign, side: str) -> Array:
-    """Matrix (4, 4) of a face gear. The lower one is the upper one turned half round the pinion's axis.
+    """Return the transform from a face gear's body frame to the frame of the upper gear.
 
-    With an odd number of the pinion's teeth its tooth stands where the upper one has a space.
+    The lower gear is the upper one turned by half a turn about the pinion's axis. With an odd number of
+    pinion teeth its tooth is where the upper gear has a space.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    side : str
+        `upper` or `lower`.
+
+    Returns
+    -------
+    (4, 4) array
+        Homogeneous matrix; rotations dimensionless, translations in m.
     """
     if side == "upper":
         return np.eye(4)
@@ -81,6 +127,7 @@ def gear_transform(design: PairDesign, side: str) -> Array:
 
 
 def _about_axis(angle: float) -> Array:
+    """Return the homogeneous matrix (4, 4) of a rotation by an angle (rad) about the gear's axis z."""
     transform = np.eye(4)
     transform[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), angle)
     return transform

@@ -1,10 +1,12 @@
-"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data)."""
+"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data).
+
+REXS has no face gear: what is lost stands in LOST, and in a comment of every file.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as Xml
 
 from facegear.build.config import Config
@@ -14,6 +16,9 @@ from facegear.io.atomic import atomic_path
 from facegear.machine.layout import Body
 
 VERSION = "2.0"
+"""Version of the REXS standard that files are written in."""
+
+
 LOST_CONTENT = (
     "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
     "distribution angles, torques with their excitations, backlash, errors and damping",
@@ -22,6 +27,7 @@ LOST_CONTENT = (
     "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",
 )
 """Content of a machine that a file cannot hold."""
+
 
 READ_UNITS = {
     "mass_of_component": "kg",
@@ -86,6 +92,7 @@ class _Model:
         )
 
     def component(self, kind: str, name: str, *attributes: tuple[str, str, float | None]) -> int:
+        """Add a component with its attributes and return its id."""
         number = len(self.components) + 1
         element = Xml.SubElement(self.components, "component", id=str(number), type=kind, name=name)
         for key, unit, value in attributes:
@@ -94,6 +101,7 @@ class _Model:
         return number
 
     def relation(self, kind: str, *members: tuple[str, int]) -> None:
+        """Add a relation between components in their roles."""
         element = Xml.SubElement(self.relations, "relation", id=str(len(self.relations) + 1), type=kind)
         for role, number in members:
             hint = self.components[number - 1].attrib["type"]
@@ -101,7 +109,24 @@ class _Model:
 
 
 def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
-    """Write a gear unit; `date` (ISO 8601) and `version` of this program stand in it. Returns the path."""
+    """Write a gear unit as a REXS 2.0 file in XML.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    unit : Unit
+        The gear unit.
+    date : str
+        Date of the file by ISO 8601.
+    version : str
+        Version of this program.
+
+    Returns
+    -------
+    Path
+        The path.
+    """
     model = _Model(date, version)
     whole, casing = model.component("gear_unit", "gear unit"), model.component("gear_casing", "casing")
     stuff = (("elastic_modulus", "MPa", unit.young), ("poisson_ratio", "none", unit.poisson))
@@ -123,6 +148,7 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
 
 
 def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -> None:
+    """Add the spur gear of a pinion to its shaft, with teeth, flanks and material."""
     sizes = (
         ("number_of_teeth", "none", spur.teeth),
         ("normal_module", "mm", spur.module),
@@ -142,11 +168,25 @@ def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -
 
 
 def read_rexs(path: str | Path) -> Unit:
-    """The gear unit of a file, whoever wrote it: every shaft, with its first cylindrical gear and bearing.
+    """Read the gear unit of a REXS file of any program: every shaft, with its first cylindrical gear and
+    bearing.
 
-    Raises FacegearError for what is no REXS file in XML, for an attribute that is no number or has another
-    unit than REXS gives it, for ids that stand twice, for a part that a relation names and that is not there,
-    for a helical gear, and for a gear without number of teeth or module.
+    Parameters
+    ----------
+    path : str or Path
+        REXS file in XML.
+
+    Returns
+    -------
+    Unit
+        The gear unit.
+
+    Raises
+    ------
+    FacegearError
+        For a file that is no REXS file in XML, an attribute that is no number or has another unit than REXS
+        gives it, an id that occurs twice, a part that a relation names and the file lacks, a helical gear,
+        and a gear without number of teeth or module.
     """
     _refuse_other_forms(Path(path))
     try:
@@ -178,6 +218,7 @@ class _Fault(Exception):
 
 
 def _unit(root: Xml.Element) -> Unit:
+    """Read the gear unit from the root of the file."""
     parts: Parts = {}
     for part in root.iter("component"):
         number = _attribute(part, "id")
@@ -205,15 +246,18 @@ def _unit(root: Xml.Element) -> Unit:
 
 
 Parts = dict[str, Xml.Element]
+
+
 Relations = list[tuple[str, dict[str, str]]]
 
 
 def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
+    """Return the ids of components of the given types."""
     return (number for number, part in parts.items() if part.attrib["type"] in types)
 
 
 def _attribute(element: Xml.Element, name: str) -> str:
-    """An attribute that every element of its kind must have."""
+    """Return an attribute that every element of its kind must have; refuse an element without it."""
     if name not in element.attrib:
         attribute_text = (
             ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
@@ -223,6 +267,7 @@ def _attribute(element: Xml.Element, name: str) -> str:
 
 
 def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
+    """Read a shaft with its first cylindrical gear and its bearing."""
     gears = [
         members["part"]
         for kind, members in relations
@@ -247,6 +292,7 @@ def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
 
 
 def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
+    """Read a spur gear; refuse a helical one and one without teeth or module."""
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
         raise _Fault(f"gear {gear} has no number of teeth or no normal module")
@@ -270,7 +316,7 @@ def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
 
 
 def _flanks_of(gear: str, relations: Relations) -> list[str]:
-    """The gear itself and its flanks."""
+    """Return the ids of a gear and of its flanks."""
     return [
         number
         for kind, members in relations
@@ -303,10 +349,6 @@ def _value(part: Xml.Element | None, key: str) -> float | None:
         name = part.attrib["id"]
         raise _Fault(f"component {name}: {key} = {text.strip()[:40]!r}: must be a finite number")
     return value
-
-
-RIGID = 1e12
-"""Stiffness of a bearing, N/m, from which it counts as rigid: ten thousand times that of a mesh."""
 
 
 def gear_unit(config: Config) -> Unit:
@@ -346,77 +388,12 @@ def gear_unit(config: Config) -> Unit:
 
 
 def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
-    """A pinion's own axis is z."""
+    """Return a pinion as a shaft, with its mass, radial and axial bearing stiffness, and spur gear."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z, spur)
 
 
 def _gear(name: str, body: Body) -> Shaft:
+    """Return a face gear as a shaft of its name, mass and bearing."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z)
-
-
-@dataclass(frozen=True)
-class RexsPinions:
-    """The equal pinions of a REXS file.
-
-    Attributes
-    ----------
-    values : dict
-        By the fields of `facegear.new_machine.wishes.MachineWishes`; only what the file gives.
-    notes : tuple of str
-        What was changed on the way, a line each.
-    """
-
-    values: dict[str, Any]
-    notes: tuple[str, ...]
-
-
-def known_of_rexs(path: str | Path) -> RexsPinions:
-    """Return the values that a REXS file has for a starting config.
-
-    These are the pinions with their bearings and bodies. The file has no face gears, roles, torques and
-    speeds.
-
-    Parameters
-    ----------
-    path : str or Path
-        The REXS file.
-
-    Returns
-    -------
-    RexsPinions
-        Values of the equal pinions, and notes.
-
-    Raises
-    ------
-    FacegearError
-        For a file without cylindrical gears, or with several kinds of them.
-    """
-    shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
-    spurs = {shaft.spur for shaft in shafts if shaft.spur is not None}
-    if len(spurs) != 1:
-        sizes = sorted((spur.teeth, spur.module) for spur in spurs)
-        descriptions = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
-        raise FacegearError(f"{path}: cylindrical gears = {descriptions}: must be equal pinions")
-    (spur,) = spurs
-    first = shafts[0]
-    file_values = {
-        "pinions": len(shafts),
-        "pinion_teeth": spur.teeth,
-        "module_mm": spur.module,
-        "pressure_angle_deg": spur.pressure_angle,
-        "pinion_width_mm": spur.width,
-        "pinion_bore_radius_mm": spur.bore,
-        "pinion_mass_kg": first.mass,
-        "input_bearing_n_per_m": first.radial,
-        "idler_bearing_n_per_m": first.radial,
-        "axial_bearing_n_per_m": first.axial,
-    }
-    values = {name: value for name, value in file_values.items() if value is not None}
-    notes = []
-    for name in [name for name in values if name.endswith("_n_per_m") and values[name] >= RIGID]:
-        if name != "idler_bearing_n_per_m":
-            notes.append(f"{path}: {name} = {values[name]:g}: taken as rigid, {RIGID:g} N/m")
-        values[name] = RIGID
-    return RexsPinions(values, tuple(notes))

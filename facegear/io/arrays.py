@@ -11,7 +11,20 @@ from facegear.io.atomic import atomic_path, verify
 
 
 def write(path: str | Path, **arrays: np.ndarray) -> None:
-    """Write arrays under their names, uncompressed."""
+    """Write arrays under their names, uncompressed.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write (npz).
+    **arrays : ndarray
+        Arrays of any shape by name.
+
+    Raises
+    ------
+    TypeError
+        For an array of Python objects.
+    """
     if any(np.asarray(array).dtype.hasobject for array in arrays.values()):
         raise TypeError("arrays of Python objects are not stored")
     with atomic_path(path) as temporary, open(temporary, "wb") as stream:
@@ -19,9 +32,25 @@ def write(path: str | Path, **arrays: np.ndarray) -> None:
 
 
 def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict[str, np.ndarray]:
-    """Read all arrays of a file; those in `shapes` must exist with that shape (None: any length).
+    """Read all arrays of a file.
 
-    Raises CorruptFile if it is missing, altered, truncated, lacks an array, or a number is not finite.
+    Parameters
+    ----------
+    path : str or Path
+        File to read (npz).
+    shapes : mapping of str to tuple
+        Shape of each array that must exist; None stands for any length.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Arrays of any shape by name.
+
+    Raises
+    ------
+    CorruptFile
+        If the file is missing, altered or truncated, lacks an array, has one of another shape, or holds a
+        number that is not finite.
     """
     verify(path)
     try:

@@ -13,7 +13,9 @@ from typing import Any
 from facegear.errors import CorruptFile, FacegearError
 
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+"""Numbers of the system's errors for a full disk or quota."""
 NO_SPACE_HINT = "no space left on the disk; free some and run again"
+"""Advice for a full disk."""
 
 
 @contextmanager
@@ -108,11 +110,13 @@ def _make(folder: Path) -> None:
 
 
 def _cannot_be_written(error: OSError) -> str:
+    """Return in words why the system refused to write."""
     reason = NO_SPACE_HINT if error.errno in NO_SPACE else (error.strerror or str(error)).lower()
     return f"cannot be written ({reason})"
 
 
 MANIFEST_SUFFIX = ".provenance.json"
+"""End of the name of a manifest's file."""
 
 
 def sha256(path: str | Path) -> str:
@@ -155,6 +159,7 @@ def require_manifest(path: str | Path) -> None:
 
 
 def _files(manifest: Path) -> Mapping[str, Any]:
+    """Return the files that a manifest lists, with their checksums."""
     try:
         files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
     except (ValueError, KeyError, TypeError):

@@ -26,6 +26,7 @@ with extras_named():
 
 
 DEGREE = 3
+"""Degree of the B-spline surfaces: cubic, so that curvature is continuous."""
 NANOMETRES = 6
 """Decimals of a coordinate in mm that a triangle's corners are rounded to, so that equal ones are equal."""
 PRODUCT = re.compile(r"\bPRODUCT\(\s*'(?:[^']|'')*'\s*,\s*'(?:[^']|'')*'")
@@ -35,7 +36,15 @@ SEWN = 1e-6
 
 
 def write_stl(path: str | Path, corners: Array) -> None:
-    """Triangles (n, 3, 3) in m as binary STL in mm, corners to the nanometre."""
+    """Write triangles as a binary STL file in mm, corners rounded to the nanometre.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    corners : (n, 3, 3) array
+        Corners of each triangle, m.
+    """
     points, cells = np.unique(
         np.round(1e3 * corners, NANOMETRES).reshape(-1, 3) + 0.0, axis=0, return_inverse=True
     )
@@ -45,10 +54,26 @@ def write_stl(path: str | Path, corners: Array) -> None:
 
 
 def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
-    """Write one solid in mm, sewn of a bicubic B-spline through each patch (n, m, 3) in m.
+    """Write one solid in mm that is sewn of a bicubic B-spline surface through each patch.
 
-    The solid is the file's only product and has the name `name`, ASCII without apostrophes. Returns its
-    volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches do not close.
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    patches : sequence of (n, m, 3) arrays
+        Points of each patch, m; the patches close around the solid.
+    name : str
+        Name of the solid, which is the file's only product: ASCII without apostrophes.
+
+    Returns
+    -------
+    float
+        Volume of the solid as OpenCASCADE integrates it, to a relative error of about 2e-5, m^3.
+
+    Raises
+    ------
+    NotConverged
+        If the patches do not close.
     """
     with gmsh_session(name):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", SEWN)
@@ -94,7 +119,9 @@ def _silent() -> Iterator[None]:
 
 
 def _surface(points: Array) -> int:
-    """The B-spline surface through a grid of points, parameters evenly spaced."""
+    """Add the B-spline surface through a grid of points (n, m, 3) in mm, parameters evenly spaced; return its
+    tag.
+    """
     poles, knots, degrees = points, [], []
     for axis in (0, 1):
         count = points.shape[axis]
@@ -120,15 +147,18 @@ def _surface(points: Array) -> int:
 
 
 VARIABLE = "PETSC_OPTIONS"
+"""Environment variable that PETSc reads its options from."""
 NO_HANDLERS = "-no_signal_handler"
+"""Option by which PETSc leaves signals alone."""
 
 
 @contextmanager
 def gmsh_session(name: str) -> Iterator[None]:
-    """Open a session of gmsh with one empty model. gmsh is global: one at a time.
+    """Open a session of gmsh with one empty model. gmsh is global: one session at a time.
 
     PETSc, which gmsh brings, takes over signals when it starts and leaves them at the system's default when
-    it ends: a broken pipe would then kill the process, and faulthandler be silent. It is asked not to.
+    it ends: a broken pipe would then kill the process, and faulthandler be silent. An environment variable
+    tells it not to.
 
     Parameters
     ----------
@@ -138,7 +168,7 @@ def gmsh_session(name: str) -> Iterator[None]:
     Yields
     ------
     None
-        While the session is open.
+        Once, while the session is open.
     """
     with _asked_of_petsc():
         gmsh.initialize(interruptible=False)
@@ -152,6 +182,7 @@ def gmsh_session(name: str) -> Iterator[None]:
 
 @contextmanager
 def _asked_of_petsc() -> Iterator[None]:
+    """Set the environment variable by which PETSc leaves signals alone, and restore it at the end."""
     before = os.environ.get(VARIABLE)
     os.environ[VARIABLE] = f"{before or ''} {NO_HANDLERS}".strip()
     try:

@@ -12,6 +12,7 @@ from facegear.io.atomic import atomic_path, verify
 
 
 def _plain(value: Any) -> Any:
+    """Return NumPy values as plain ones; refuse any other object."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):

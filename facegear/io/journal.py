@@ -83,15 +83,18 @@ def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, A
 
 
 def _append(stream: BinaryIO, record: dict[str, Any]) -> None:
+    """Write one record as a line; raise OSError if the disk took only a part of it."""
     line = _line(record).encode()
     if stream.write(line) != len(line):
         raise OSError(errno.ENOSPC, "the line was not written whole")
 
 
 def _line(record: dict[str, Any]) -> str:
+    """Return a record as a line of its digest and its JSON text."""
     text = json.dumps(record)
     return f"{_digest(text)} {text}\n"
 
 
 def _digest(text: str) -> str:
+    """Return the first 16 digits of a text's SHA-256."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]

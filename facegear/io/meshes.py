@@ -18,20 +18,20 @@ def write_vtu(
     point_data: Mapping[str, Array] | None = None,
     cell_data: Mapping[str, list[Array]] | None = None,
 ) -> None:
-    """Write a .vtu for ParaView.
+    """Write a mesh with fields as a .vtu file for ParaView.
 
     Parameters
     ----------
     path : str or Path
-        Path of the file.
+        File to write.
     nodes : (N, 3) array
-        Positions in m.
-    cells : mapping of arrays
-        Node indices (M, nodes of a cell) in VTK's order, by meshio's name of the type.
-    point_data : mapping of (N, ...) arrays, optional
-        Fields on the nodes, any unit.
-    cell_data : mapping of lists of (M, ...) arrays, optional
-        Fields on the cells, any unit, an array for each type.
+        Coordinates, in any unit.
+    cells : mapping of str to (M, nodes of a cell) array of int
+        Node indices by meshio's name of the cell type, in VTK's node order.
+    point_data : mapping of str to (N, ...) array or None
+        Field values at the nodes by name, in any unit.
+    cell_data : mapping of str to list of arrays or None
+        Field values of the cells by name: one array (M, ...) for each type of `cells`, in any unit.
     """
     mesh = meshio.Mesh(nodes, list(cells.items()), point_data=point_data, cell_data=cell_data)
     with atomic_path(path) as temporary:
@@ -39,7 +39,9 @@ def write_vtu(
 
 
 NODE = "%d, %.12e, %.12e, %.12e\n"
+"""Format of a node's line: label and coordinates, m; 13 digits, as CalculiX reads at most 20 characters."""
 ELEMENT = f"{', '.join(['%d'] * 11)},\n{', '.join(['%d'] * 10)}\n"
+"""Format of the two lines of a C3D20 element: its label and 20 nodes."""
 
 
 def write_inp(
@@ -50,25 +52,25 @@ def write_inp(
     node_sets: Mapping[str, Integers],
     surfaces: Mapping[str, Sequence[tuple[int, str]]],
 ) -> None:
-    """Write a mesh as an Abaqus or CalculiX input deck (.inp).
+    """Write a mesh of C3D20 elements as an input deck.
 
-    Nodes that no element uses are left out; labels are index + 1. Lengths are in m, so a modulus belongs in
-    Pa. CalculiX reads at most 20 characters a number.
+    Nodes that no element uses are left out; labels are index + 1. Lengths are in m, so that a modulus must be
+    given in Pa. CalculiX reads at most 20 characters a number.
 
     Parameters
     ----------
     path : str or Path
-        Path of the file.
+        File to write.
     title : str
         Heading of the deck.
     nodes : (N, 3) array
-        Positions in m.
+        Coordinates, m.
     elements : (M, 20) array of int
-        Node indices of C3D20 elements.
-    node_sets : mapping of arrays of int
-        Node indices (any number) of each set.
-    surfaces : mapping of sequences
-        Pairs of an element's index and its face S1 to S6, for each surface.
+        Indices of the nodes of each element.
+    node_sets : mapping of str to (K,) array of int
+        Node indices of each named set.
+    surfaces : mapping of str to sequence of (int, str)
+        Element index and face, S1 to S6, of each facet of a named surface.
     """
     used_nodes = np.unique(elements)
     with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
@@ -85,10 +87,11 @@ def write_inp(
 
 
 def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
-    """A line for each row of a table, all of them formatted at once."""
+    """Write a line for each row of a table, all lines formatted at once."""
     stream.write(line * len(table) % tuple(table.ravel().tolist()))
 
 
 def _list(stream: TextIO, labels: Integers) -> None:
+    """Write labels in lines of twelve."""
     for start in range(0, len(labels), 12):
         stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

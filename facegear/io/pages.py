@@ -14,14 +14,14 @@ from facegear.io.atomic import verify
 
 
 def render(template: Path, **values: Any) -> str:
-    """Fill in a template. A name that the template uses and `values` lacks is an error.
+    """Fill a template.
 
     Parameters
     ----------
     template : Path
-        Template of jinja2.
+        Jinja2 template.
     **values : Any
-        Values by name; they are escaped.
+        Values by the names that the template uses; texts are escaped. A name that is missing is an error.
 
     Returns
     -------
@@ -43,22 +43,22 @@ WHOLE_SVG, TAIL = re.compile(r"(</svg>|<svg[^<]*/>)\s*$"), 1000
 
 
 def read_svg(path: Path) -> str:
-    """Read a drawing, refusing one that is cut off or altered.
+    """Return the text of a drawing.
 
     Parameters
     ----------
     path : Path
-        Path of the svg.
+        File to read (svg).
 
     Returns
     -------
     str
-        Its text.
+        The text.
 
     Raises
     ------
     CorruptFile
-        If it is missing, altered or cut off.
+        If the file is missing, altered or cut off.
     """
     verify(path)
     try:

@@ -67,6 +67,7 @@ def read_section(path: str | Path) -> list[tuple[float, float]]:
 
 
 def _require_file(path: Path) -> None:
+    """Refuse what is no file, or a file that is too long."""
     try:
         size = path.stat().st_size
     except (OSError, ValueError):
@@ -90,6 +91,7 @@ def _read_shape(path: str | Path) -> tuple[int, int]:
 
 
 def _count_shapes(shapes: list[tuple[int, int]]) -> str:
+    """Say in words how many solids, faces, curves and points a file holds."""
     dimensions = [dimension for dimension, _ in shapes]
     names = {3: "solids", 2: "faces without a solid", 1: "curves", 0: "points"}
     counts = [f"{dimensions.count(key)} {name}" for key, name in names.items() if key in dimensions]
@@ -171,6 +173,7 @@ def _plane(points: Array) -> Array:
 
 
 def _require_size(radius: float) -> None:
+    """Refuse an outer radius, mm, that shows a wrong unit."""
     if not SMALLEST <= radius <= LARGEST:
         bounds = f"{SMALLEST:g} to {LARGEST:g} mm are read"
         raise StepFault(f"its outer radius is {radius:.4g} mm by the unit of the file; {bounds}")

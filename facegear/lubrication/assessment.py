@@ -1,4 +1,9 @@
-"""Tables of loss, heat, film and scuffing of the pair, and its friction as a disturbance of motion."""
+"""Tables of loss, heat, film and scuffing of the pair, and its friction as a disturbance of motion.
+
+Friction of a mesh as a disturbance of the motion: its force and moments over the force of the mesh. At every
+loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at each
+position of a pitch keep the sign that sliding has there: it turns at the pitch line.
+"""
 
 from collections.abc import Sequence
 from math import pi
@@ -125,6 +130,7 @@ def by_torque_table(
 def _torque_row(
     lubrication: Lubrication, contact: LoadedContact, state: Running, speed: float, limits: Limits
 ) -> dict[str, object]:
+    """Return the row of table by_torque: losses, temperatures and film at one torque."""
     torque, points, hats = contact.torque, contact.points, contact.hats
     on, factor, power = points.inside, loss_factors(hats), torque * speed
     rise = np.where(on, state.flash, -1.0)
@@ -195,6 +201,7 @@ def position_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
 
 
 def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
+    """Return loss, flash temperature and film over the positions of a pitch."""
     torque, points, hats = contact.torque, contact.points, contact.hats
     factor = loss_factors(hats)
     rows = np.searchsorted(factor.positions, hats.position)
@@ -261,6 +268,7 @@ def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
 
 
 def _map_row(contact: LoadedContact, speed: float, lubrication: Lubrication) -> tuple[float, ...]:
+    """Return the row of the efficiency map at one torque and speed, nan where it gets too hot."""
     key = contact.torque, speed
     try:
         state = running(contact, speed * RPM, lubrication)
@@ -297,6 +305,7 @@ def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> d
 
 
 def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, AnyArray]:
+    """Return the local values at all contact points as arrays, SI units."""
     return {
         "torque_n_m": points.torque,
         "position": points.position,
@@ -325,4 +334,5 @@ def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, Any
 
 
 def _min_of(values: Array, on: Mask) -> float:
+    """Return the smallest value within a mask, nan if the mask is empty."""
     return float(values[on].min()) if on.any() else np.nan

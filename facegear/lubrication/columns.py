@@ -56,6 +56,7 @@ POSITION_COLUMNS = (
 )
 """Columns of `assessment.position_table`."""
 POSITION_FINITE = POSITION_COLUMNS[:5]
+"""Columns of table `positions` that hold a number in every row."""
 
 EXCITATION_COLUMNS = (
     "torque_n_m",
@@ -115,8 +116,10 @@ MESH_FINITE = tuple(
     for name in MESH_COLUMNS
     if "safety" not in name and "margin" not in name and "smallest" not in name and name != "loss_in_motion_w"
 )
+"""Columns of table `meshes` that hold a number in every row."""
 
 BODY_COLUMNS = ("bin", "speed_rpm", "body", "heat_w", "bulk_c")
+"""Columns of table `bodies`: heat, W, and bulk temperature, C, of each body."""
 
 MACHINE_COLUMNS = (
     "bin",
@@ -140,6 +143,7 @@ FRICTION_STUDY_COLUMNS = (
     "smallest_film_ratio",
     "within_torques_solved",
 )
+"""Columns of the table of studied machines with friction; units stand in the names."""
 
 LOCAL_ARRAYS: dict[str, tuple[int | None, ...]] = {
     "torque_n_m": (None,),

@@ -173,7 +173,7 @@ class LoadedContact:
         return point_weights
 
     def at_hats(self, values: Array) -> Array:
-        """Return values of points at every hat.
+        """Average values of contact points over each basis function (hat), weighted by load.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class LoadedContact:
 
 
 def loaded_contacts(contact_places: ContactPoints, hats: HatSlip) -> tuple[LoadedContact, ...]:
-    """Separate points and hats by torque.
+    """Separate contact points and basis functions by torque.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ Loads = TypeVar("Loads", ContactPoints, HatSlip)
 
 
 def select(loads: Loads, on: Mask | Integers | slice) -> Loads:
-    """Select some of the points or hats.
+    """Select some of the contact points or basis functions.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def select(loads: Loads, on: Mask | Integers | slice) -> Loads:
 
 
 def concatenate(parts: Sequence[Loads]) -> Loads:
-    """Concatenate points or hats.
+    """Join contact points, or basis functions, of several contacts.
 
     Parameters
     ----------
@@ -256,6 +256,7 @@ def concatenate(parts: Sequence[Loads]) -> Loads:
 
 
 def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> LoadedContact:
+    """Combine points of contact and slip of basis functions at one torque."""
     positions, row = np.unique(np.concatenate([contact_places.position, hats.position]), return_inverse=True)
     line = row * PAIRS.size + np.concatenate([contact_places.tooth, hats.tooth]) - PAIRS[0]
     count, planes = (
@@ -277,11 +278,14 @@ def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> Loa
 
 
 def _fill_edges(lines: ContactLines) -> ContactLines:
+    """Fill curvature and slope of contact lines beyond the flank by their nearest values."""
     return replace(lines, curvature=_nearest(lines.curvature), slope=_nearest(lines.slope))
 
 
 def _nearest(values: Array) -> Array:
-    """Rows (p, n) in which a nan takes the value of the nearest column that has one, if any has."""
+    """Replace each nan of rows (p, n) by the value of the nearest finite column; rows without any
+    stay nan.
+    """
     columns = np.arange(values.shape[1])
     is_finite = np.isfinite(values)
     before = np.maximum.accumulate(np.where(is_finite, columns, -1), axis=1)
@@ -293,7 +297,7 @@ def _nearest(values: Array) -> Array:
 
 
 def _rows(arrays: Arrays) -> Integers:
-    """Contact line (m,) of every loaded plane."""
+    """Return the number of the contact line (m,) to which every loaded plane belongs."""
     keys = zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True)
     row = {key: number for number, key in enumerate(keys)}
     plane_keys = zip(arrays["line_position"].tolist(), arrays["line_tooth"].tolist(), strict=True)
@@ -301,7 +305,7 @@ def _rows(arrays: Arrays) -> Integers:
 
 
 def _half_lengths(arrays: Arrays, row: Integers) -> Array:
-    """Half the loaded length (m,) of the line that each plane belongs to."""
+    """Return half the loaded length (m,), m, of the contact line to which each plane belongs."""
     _, torque = np.unique(arrays["line_torque_n_m"], return_inverse=True)
     _, line = np.unique(torque * (row.max() + 1) + row, return_inverse=True)
     whole = np.zeros(line.max(initial=0) + 1)

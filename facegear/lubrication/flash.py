@@ -206,6 +206,6 @@ def moving_temperature(at: float, number: float) -> float:
 
 @cache
 def _gauss() -> tuple[Array, Array]:
-    """Nodes and weights on 0..1."""
+    """Return nodes and weights of Gauss's rule on 0..1."""
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     return 0.5 * (nodes + 1), 0.5 * weights

@@ -45,7 +45,9 @@ class FrictionModel(Protocol):
     """Coefficient of friction at every point, and where it was measured."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the model in the config."""
+        ...
 
     @property
     def by_film(self) -> bool:
@@ -89,7 +91,7 @@ class Constant:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Return the constant.
+        """Return the constant friction coefficient at every point.
 
         Parameters
         ----------
@@ -104,7 +106,7 @@ class Constant:
         return np.full_like(at.line_load, self.value)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Return no limits.
+        """Return that the constant coefficient has no limits of use.
 
         Parameters
         ----------

@@ -248,6 +248,7 @@ def _viscosity_term(viscosity: Numbers) -> Array:
 
 
 def _within_test_speed(at: Rubbing) -> Mask:
+    """Whether the pitch line speed is within the tests of the formula, at each point."""
     return np.full(at.line_load.shape, at.pitch_speed <= LARGEST_SPEED)
 
 

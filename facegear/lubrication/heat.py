@@ -219,6 +219,7 @@ def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) 
 def _bulk_after(
     state: "Running", contact_places: ContactPoints, lubrication: Lubrication
 ) -> tuple[float, float]:
+    """Return the bulk temperatures of pinion and gear, C, that a state's heat gives."""
     if isinstance(lubrication.bulk, Cooling):
         return warmed(state.heat, lubrication.bulk, lubrication.oil_temperature)
     if isinstance(lubrication.bulk, BorrowedBulk):
@@ -373,6 +374,7 @@ def _line_film(
 def _rubbing(
     spots: ContactPoints, speed: float, lubrication: Lubrication, viscosity: Array, film_ratio: Array
 ) -> Rubbing:
+    """Return loads, radii, speeds and oil data of contact points for the friction formulas."""
     return Rubbing(
         line_load=spots.scaled_load,
         radius=spots.radius,
@@ -404,4 +406,5 @@ def _flash_temperature(
 
 
 def _products(oil: Oil, temperature: Array) -> tuple[Array, Array]:
+    """Return viscosity, Pa s, and pressure coefficient, 1/Pa, of an oil at temperatures, C."""
     return oil.viscosity(temperature), oil.pressure_coefficient_at(temperature)

@@ -124,7 +124,7 @@ class OverTorque:
     values: Array
 
     def at(self, torque: Numbers) -> Array:
-        """Interpolate the quantity.
+        """Interpolate the quantity, which is known at some torques, at other torques.
 
         Parameters
         ----------
@@ -193,7 +193,7 @@ def monotone_at(nodes: Array, values: Array, at: Array) -> Array:
 
 
 def _slopes(steps: Array, rises: Array) -> Array:
-    """Slopes (..., t) at the nodes."""
+    """Return the slopes (..., t) of the monotone interpolant at its nodes."""
     slopes = np.zeros((*rises.shape[:-1], steps.size + 1))
     if steps.size == 1:
         slopes[...] = rises

@@ -41,7 +41,7 @@ class LossCurves:
     heat_fraction: Array
 
     def at(self, torque: Array, *names: str) -> Array:
-        """Interpolate quantities at the torque of each mesh.
+        """Interpolate quantities of each mesh at its torque.
 
         Parameters
         ----------
@@ -79,13 +79,17 @@ class Pair(Protocol):
     """Tooth pair whose contact is known at some torques, and how it is lubricated."""
 
     @property
-    def lubrication(self) -> Lubrication: ...
+    def lubrication(self) -> Lubrication:
+        """Oil, roughness, friction and bulk temperature of the flanks."""
+        ...
 
     @property
-    def torques(self) -> Array: ...
+    def torques(self) -> Array:
+        """Torques at which the contact is solved, N m."""
+        ...
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the loss of meshes.
+        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -101,7 +105,7 @@ class Pair(Protocol):
         """
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes.
+        """Compute loss, temperature and film of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -163,7 +167,7 @@ class LoadedPair:
         return [running_at(contact, speed, self.lubrication, bulk) for contact in self.contacts]
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the loss of meshes.
+        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -223,7 +227,7 @@ class LoadedPair:
         return curves, np.array([state.bulk for state in states])
 
     def _row(self, states: Sequence[Running], speed: float) -> Array:
-        """Fields of MeshCurves (5, t) of one mesh in its states."""
+        """Return the fields (5, t) of MeshCurves of one mesh from its states at t torques."""
         inside = [contact.points.inside for contact in self.contacts]
         rows = [
             (
@@ -379,14 +383,14 @@ def settled_bulk(
 
 
 def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:
-    """Loss (n,) W of every loaded flank, and the part of it that heats the pinion."""
+    """Return the loss (n,) of every loaded flank, and the part of it that heats the pinion, both in W."""
     loss_fraction, fraction = curves.at(loads.torque, "loss_fraction", "heat_fraction")
     loss = loss_fraction * loads.torque * speed
     return loss, fraction * loss
 
 
 def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
-    """Heat (bodies,) W."""
+    """Return the heat (bodies,), W, that every body takes up from its meshes."""
     heat = np.zeros(loads.bodies)
     np.add.at(heat, loads.pinion, warm)
     np.add.at(heat, loads.pinions + loads.gear, loss - warm)
@@ -394,6 +398,7 @@ def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
 
 
 def _machine_loss_of(loads: MeshLoads, curves: MeshCurves, speed: float, bulk: Array) -> MachineLoss:
+    """Return losses, temperatures and film of all meshes at given bulk temperatures, C."""
     loss, warm = _losses(loads, curves, speed)
     flash, film_ratio, micropitting = curves.at(loads.peak, "flash", "film_ratio", "micropitting")
     torque_range = OverTorque(curves.torques, curves.torques)

@@ -113,6 +113,7 @@ def body_heat_table(states: Sequence[MachineState], lubrication: Lubrication) ->
 
 
 def _bulk(lubrication: Lubrication, heat: float, pinion: bool) -> float:
+    """Return the bulk temperature, C, of a body that receives a heat, W; nan if it is borrowed."""
     match lubrication.bulk:
         case GivenBulk(temperature):
             return temperature
@@ -143,6 +144,7 @@ def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
 
 
 def _row(state: MachineState) -> dict[str, object]:
+    """Return the row of table `machine` of one bin of the duty cycle."""
     loss = state.losses.total
     return {
         "bin": state.bin,
@@ -155,7 +157,7 @@ def _row(state: MachineState) -> dict[str, object]:
 
 
 def _whole(bins: pd.DataFrame) -> dict[str, object]:
-    """The whole duty cycle: means weighted with the hours."""
+    """Return the row of the whole duty cycle: means weighted by the hours of the bins."""
     hours = bins["hours"].sum()
 
     def mean(values: pd.Series) -> float:

@@ -32,7 +32,7 @@ class PowerOfViscosity:
     exponent: float
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Compute the pressure coefficient.
+        """Compute the pressure-viscosity coefficient as a power of the viscosity.
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class PolyolEster:
     """Pressure coefficient of MIL-L-23699 as a public rolling bearing code has it."""
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Compute the pressure coefficient.
+        """Compute the pressure-viscosity coefficient of polyol esters from their viscosity.
 
         Parameters
         ----------
@@ -235,4 +235,5 @@ class Oil:
 
 
 def _double_log(viscosity: float) -> float:
+    """Return the left side of the Walther equation (ASTM D341) for a viscosity, m^2/s."""
     return log10(log(1e6 * viscosity + SHIFT) / log(10.0))

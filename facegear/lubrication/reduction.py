@@ -50,7 +50,7 @@ class Group:
 
     @classmethod
     def of(cls, by_torque: Sequence[ContactPoints]) -> "Group":
-        """Build the group from the points of each torque.
+        """Build the group from the contact points of each torque.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class ReducedPair:
         return self.few.torques
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the loss of meshes.
+        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -215,7 +215,7 @@ class ReducedPair:
         return LossCurves(self.torques, *self._loss_fractions(speed, self._at_torques(bulk)))
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes.
+        """Compute loss, temperature and film of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------

@@ -76,12 +76,14 @@ def assembly(
 
 @kept_by_content(4)
 def _without_errors(layout: Layout, half_backlash: Array, clocking: Array) -> Assembly:
+    """Compute the assembly without manufacturing errors; equal arguments share the result."""
     return _assembly(layout, half_backlash, clocking, None)
 
 
 def _assembly(
     layout: Layout, half_backlash: Array, clocking: Array, errors: Imperfections | None
 ) -> Assembly:
+    """Compute which teeth meet, the play of each pinion, and whether its teeth can mesh."""
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
     if len(layout.gears) < 2:
@@ -135,7 +137,9 @@ def _wrap_pitches(pitches: Array) -> Array:
 
 
 def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
-    """Mask (pinions,) of the candidates that share one place of the lower gear, chosen by rising |left|."""
+    """Return which candidates (pinions,) can mesh at one common position of the lower gear, chosen by rising
+    |left|.
+    """
     fits = np.zeros(left.size, bool)
     low, high = -np.inf, np.inf
     outwards = np.argsort(np.abs(left)).tolist()

@@ -189,6 +189,7 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
 
 
 def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:
+    """Whether the pinions couple only through the gears and the springs of their own meshes."""
     size, pinions = len(stiffness), len(layout.pinions)
     group = np.full(size, -1)
     group[coordinates[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
@@ -224,6 +225,7 @@ def _springs(layout: Layout, coordinates: Integers, scale: Array, bearing: Array
 
 
 def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Array]:
+    """Return coordinates that statics solves for, and a length scale for each."""
     coordinates: list[int] = []
     lengths: list[float] = []
     pinions, bodies = len(layout.pinions), len(layout.bodies)

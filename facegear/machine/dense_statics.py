@@ -44,7 +44,7 @@ class Contacts:
     upper: Array
 
     def beyond(self, deflections: Array) -> Array:
-        """Return how far deflections lie beyond the edges.
+        """Return how far deflections of contacts lie beyond the backlash edges, 0 between the edges.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class _Rings:
     clearance: Array
 
     def push(self, q: Array) -> Array:
-        """Forces (..., n) of the bearings at displacements (..., n)."""
+        """Return the forces (..., n) of the bearings with clearance at displacements (..., n)."""
         forces = np.zeros_like(q)
         displacements = q[..., self.coordinates]
         distance = np.maximum(np.hypot(displacements[..., 0], displacements[..., 1]), self.clearance)
@@ -161,9 +161,11 @@ class _Springs:
     rings: _Rings
 
     def deflections(self, q: Array) -> Array:
+        """Return the deflection of every contact, m, at displacements `q`."""
         return self.jacobian @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
+        """Return the force of every contact, N, at displacements `q`."""
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
@@ -172,7 +174,9 @@ class _Springs:
         return balance + self.rings.push(q) if self.rings.clearance.size else balance
 
     def curvature(self, q: Array, slope: Array) -> Array:
-        """Second derivatives of the energy at q with these slopes of the contacts' forces."""
+        """Return the second derivatives of the energy at displacements q, with given slopes of the contacts'
+        forces.
+        """
         curvature = self.bearing + (self.jacobian.T * slope) @ self.jacobian
         if self.rings.clearance.size:
             self.rings.add_tangents(q, curvature)
@@ -209,6 +213,7 @@ class Line:
     bearings: Callable[[Array], Array] | None = None
 
     def _forces(self, s: Array | float) -> Array:
+        """Return the forces, N, of the contacts at a step `s` along the line."""
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:
@@ -247,7 +252,8 @@ class Line:
         return np.concatenate([[0.0], inside, [FARTHEST]])
 
     def minimum(self) -> float:
-        """Return the zero of the slope, which only grows.
+        """Return the step along the line at which the energy is least: the zero of its slope, which only
+        grows.
 
         Returns
         -------
@@ -292,11 +298,11 @@ class Line:
 
 
 def _minimise(springs: _Springs) -> Array:
-    """Proximal point method (Rockafellar 1976): each round ties the body to its last position by a spring
-    softer than before.
+    """Minimise the energy by the proximal point method (Rockafellar 1976).
 
-    The springs make every round strictly convex, so that bodies free inside their backlash have a position
-    too; the force in the springs goes to zero as the rounds settle.
+    Each round ties the body to its last position by a spring softer than before. The springs make every round
+    strictly convex, so that bodies free inside their backlash have a position too; the force in the springs
+    goes to zero as the rounds settle.
     """
     size = np.abs(springs.loads).max()
     stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
@@ -327,7 +333,7 @@ def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) 
 
 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
-    """Newton's method with an exact line search on the piecewise quadratic energy of one round.
+    """Minimise the piecewise quadratic energy of one round by Newton's method with an exact line search.
 
     A whole step between places where the same contacts are pressed ends at the minimum of their quadratic: no
     line is searched there.

@@ -1,4 +1,13 @@
-"""Forces on the bodies beside the meshes' springs: periodic torques, and friction of the meshes."""
+"""Forces on the bodies beside the meshes' springs: periodic torques, and friction of the meshes.
+
+Friction of the meshes as forces on the bodies, in first order a part of each flank's elastic force. The
+forces of friction at all points of the contact of a flank, with the signs of sliding that they have at each
+place of the mesh cycle, make one force on the pinion and two moments about the axes. Each is the elastic
+force of the flank times a ratio that depends on the place in the mesh cycle alone. Vibration changes the
+force, but not the direction of sliding.
+
+The machine turns evenly: the output gives way by the torque that friction takes, at every instant.
+"""
 
 from dataclasses import dataclass
 

@@ -73,7 +73,7 @@ class DriveLine:
 
     @property
     def tilting(self) -> tuple[int, ...]:
-        """The pinions that tilt."""
+        """Indices of the pinions that tilt."""
         return tuple(i for i, seat in sorted(self.seats.items()) if seat.tilt_inertia is not None)
 
     @property
@@ -126,7 +126,7 @@ class DriveLine:
             first += len(chain)
 
     def torque_coordinates(self) -> Integers:
-        """Return where the torque of every body acts.
+        """Return the coordinate on which the torque of every body acts.
 
         Returns
         -------
@@ -190,15 +190,18 @@ class DriveLine:
         )
 
     def _inertias(self) -> Array:
+        """Return the inertias of tilts and turning masses, kg m^2."""
         tilts = [self.seats[i].tilt_inertia for i in self.tilting for _ in range(2)]
         return np.array([*tilts, *(mass.inertia for *_, chain in self.chains() for mass in chain)], float)
 
     def _labels(self) -> list[str]:
+        """Return the names of the coordinates of tilts and turning masses."""
         names = self.layout.body_names
         tilts = [f"{names[i]}:{letter}" for i in self.tilting for letter in TILT_LETTERS]
         return tilts + [f"{names[body]}:{mass.name}" for body, _, chain in self.chains() for mass in chain]
 
     def _lengths(self) -> Array:
+        """Return the radius, m, by which each angle counts as a displacement."""
         layout = self.layout
         radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
         tilts = [layout.pinion_radius] * (2 * len(self.tilting))
@@ -219,6 +222,7 @@ class DriveLine:
         return stiffness, dampers
 
     def _inertia(self, coordinate: int) -> float:
+        """Return the inertia of a coordinate by its number in the whole machine, kg m^2."""
         return float(self._inertias()[coordinate - self.layout.dof])
 
     def _spin(self, model: LinearModel) -> Spin | None:
@@ -254,7 +258,7 @@ class DriveLine:
         return DriveLine(layout, seats, self.masses)
 
     def static_from_layout(self, model: LinearModel) -> bool:
-        """Whether `extend_displacements` holds.
+        """Whether the static displacement follows from that of the bodies by `extend_displacements`.
 
         Parameters
         ----------

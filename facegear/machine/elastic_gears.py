@@ -126,6 +126,7 @@ class ElasticGears:
         )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
+        """Add the elastic coordinates of one face gear to the linear model."""
         layout, face_gear = self.layout, self.layout.gears[gear]
         elastic = coordinates(body, face_gear.sign, layout.angles, layout.pressure_angle)
         old, new = model.size, len(elastic.letters)
@@ -167,9 +168,11 @@ class ElasticGears:
 def _hub_terms(
     layout: Layout, gear: int, body: ReducedBody, elastic: Coordinates
 ) -> tuple[Integers, Array, Array]:
-    """Coordinates (h,) of a gear's hub, and its masses and velocity terms (h, k) with those of the body.
+    """Return coordinates (h,) of a gear's hub, and masses and velocity terms (h, k) that couple it to its
+    body.
 
-    A tilt about a height h is that about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h, r).
+    A tilt about a height h is a tilt about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h,
+    r).
     """
     hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
     if layout.gears[gear].body.tilt is None:
@@ -196,7 +199,7 @@ def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple
 
 
 def _centre(layout: Layout, gear: int, body: ReducedBody) -> float:
-    """Height (m) in the section of the point about which a hub tilts."""
+    """Return the height (m), in the section, of the point about which a hub tilts."""
     tilt = layout.gears[gear].body.tilt
     return float(body.pitch_height) - (0.0 if tilt is None else tilt.below)
 

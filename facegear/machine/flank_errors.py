@@ -35,6 +35,7 @@ def error_series(machine: Machine) -> tuple[Harmonics, ...]:
 
 @lru_cache(maxsize=16)
 def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
+    """Return the Fourier series of the error of every flank; shared by equal machines."""
     mesh_series = machine.imperfections.series
     shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
     return _flank_series(tuple(shapes), machine.error_phases)
@@ -177,6 +178,7 @@ def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonic
 
 
 def _flanks(tangential: Array, separating_error: Array) -> Array:
+    """Return errors of drive and back flanks side by side, m."""
     return np.concatenate([separating_error + tangential, separating_error - tangential], axis=-1)
 
 

@@ -154,6 +154,7 @@ def flank_law(machine: Machine) -> MeshLaw:
 
 @lru_cache(maxsize=16)
 def _flank_law(machine: Machine) -> MeshLaw:
+    """Return the force law of all flanks of a machine; shared by equal machines."""
     if machine.law is not None:
         return machine.law
     if machine.tables is None:
@@ -190,6 +191,7 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 
 @kept_by_content(4)
 def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
+    """Return the linear law of flanks with a stiffness series and a phase for each mesh."""
     return linear_law(_flank_series(stiffness, phases))
 
 
@@ -242,11 +244,13 @@ def line_law(machine: Machine) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
+    """Return the linear law of flanks that lag behind each other, of one stiffness."""
     return linear_law([stiffness.shift(lag) for lag in lags])
 
 
 @kept_by_content(4)
 def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) -> MeshLaw:
+    """Return the load-dependent law of flanks that lag behind each other, from tables."""
     return load_dependent_law(shift_tables(drive, lags))
 
 

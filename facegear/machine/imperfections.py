@@ -53,6 +53,7 @@ class ToothErrors:
 
 
 def _at(curve: Array, teeth: int, tooth_positions: Array) -> Array:
+    """Return a curve over the teeth of a gear, m, at positions counted in teeth."""
     return np.interp(tooth_positions, np.arange(curve.size) * (teeth / curve.size), curve, period=teeth)
 
 

@@ -1,4 +1,10 @@
-"""Kinematics of meshes: as the teeth move, and as the source paper prints them."""
+"""Kinematics of meshes: as the teeth move, and as the source paper prints them.
+
+Equation (13) of the source paper to the letter, to compare with the paper: not what gears do. It stands in
+the library and not with the paper. The scan of bearing stiffness compares both kinematics for every machine,
+a copy of the paper's config is to load from the installed package, and the fingerprint of a stage must reach
+the code that its config names.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,7 +29,7 @@ class PrintedKinematics:
     follows_rotation: bool = False
 
     def require(self, layout: Layout) -> None:
-        """Accept any radii.
+        """Accept any radii, as the printed equation does.
 
         Parameters
         ----------

@@ -238,7 +238,7 @@ class Layout:
 
     @cached_property
     def tilting(self) -> tuple[int, ...]:
-        """The gears that may rock."""
+        """Indices of the gears that may tilt."""
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
 
     def tilt_distance(self, gear: int) -> float:

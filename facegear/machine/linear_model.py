@@ -1,4 +1,9 @@
-"""The linear part of a machine: bodies, bearings, mesh directions and their matrices."""
+"""The linear part of a machine: bodies, bearings, mesh directions and their matrices.
+
+    M q'' + (D + W G) q' + (K + W N + W^2 P) q = torques + forces - rows^T F,   D = a M + b K + dampers
+
+W is the angular speed of the pinions (rad/s) and F the forces of the flanks.
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -103,7 +108,7 @@ class LinearModel:
 
     @property
     def loads(self) -> Array:
-        """Torques and forces (n,)."""
+        """Constant generalised loads (n,): torques, N m, and forces, N."""
         return self.torques + self.forces
 
     @property
@@ -131,7 +136,7 @@ class LinearModel:
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: AnyArray) -> AnyArray:
-        """Return M times vectors.
+        """Multiply vectors by the mass matrix M.
 
         Parameters
         ----------
@@ -185,7 +190,7 @@ class LinearModel:
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Return which coordinates belong to a body.
+        """Return the indices of the coordinates that belong to a body.
 
         Parameters
         ----------
@@ -282,6 +287,7 @@ def flank_jacobian(layout: Layout) -> Array:
 
 
 def _tilts(layout: Layout) -> list[Tilt]:
+    """Return the tilts of the gears that may tilt."""
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
 
 
@@ -347,6 +353,7 @@ def _alone(layout: Layout) -> LinearModel:
 
 
 def _rings(layout: Layout, clearance: Array) -> Rings:
+    """Return the bearings with clearance: body, radial stiffness, N/m, and clearance, m."""
     body = np.flatnonzero(clearance > 0.0)
     return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
 

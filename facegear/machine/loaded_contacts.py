@@ -2,6 +2,16 @@
 
 The load decides: a contact with at most OPEN_SHARE of the largest flank force is open, one with at least
 CLOSED_SHARE is closed. In between, rounding and the last digits of a torque would decide: `undecided`.
+
+Stiffness of the flanks that carry load, about the place where the torques hold the machine. Behind the teeth
+of a mesh lies a body, of which only some modes are kept. What they leave out is a static compliance R (2, 2)
+between the two flanks of the mesh, the residual of MacNeal 1971 without mass. With the slopes D of the teeth
+of both flanks and the deflections d,
+
+    F = S d,   S = (D^-1 + R)^-1 = (1 + D R)^-1 D
+
+A flank that presses alone has its entry of the diagonal of R in series with its teeth. Where both flanks of a
+mesh press, S couples them: teeth on both of its flanks bend one rim.
 """
 
 from dataclasses import dataclass, replace
@@ -94,6 +104,7 @@ class LoadedContacts:
         return Contact.UNCERTAIN in [*self.flank_states(), *self.ring_states()]
 
     def _state(self, force: float) -> Contact:
+        """Return whether a flank with a force, N, is open, in contact, or too near to tell."""
         largest = self.flanks.max()
         if force <= OPEN_SHARE * largest:
             return Contact.OPEN
@@ -183,7 +194,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
 
 
 SAMPLES = 64
-"""Places in the mesh cycle for each harmonic of the mesh stiffness, as `Harmonics.softened` takes them."""
+"""Phases at which the softened stiffness is computed, for each harmonic of the teeth's own stiffness."""
 
 
 def flank_springs(machine: Machine, contacts: LoadedContacts, contact_mask: Mask) -> Array:

@@ -184,6 +184,7 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
 def _springs_in_states(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> tuple[LinearModel, Array]:
+    """Return linear model and flank stiffness with the flanks closed that are in the given states."""
     contact_mask = np.array([state in closed_states for state in contacts.flank_states()])
     return _pressed_bearings(machine, contacts, closed_states), flank_springs(machine, contacts, contact_mask)
 
@@ -294,6 +295,7 @@ def contact_table(machine: Machine, vibrating_machine: VibratingMachine, stiffne
 
 
 def _mesh_state(drive: Contact, back: Contact) -> str:
+    """Name the state of a mesh from the states of its two flanks."""
     if Contact.UNCERTAIN in (drive, back):
         return Contact.UNCERTAIN.value
     if drive is Contact.IN_CONTACT:

@@ -1,4 +1,9 @@
-"""Natural frequencies, shapes and names of modes with the mean mesh stiffness, equations (23), (24)."""
+"""Natural frequencies, shapes and names of modes with the mean mesh stiffness, equations (23), (24).
+
+Name each mode by what moves in it: the paper's symbols and three classes, read from the mode shapes. Both are
+taken over all modes of one frequency together, so they do not depend on the arbitrary basis that an
+eigenvalue solver returns for a repeated frequency.
+"""
 
 import itertools
 from collections.abc import Sequence
@@ -87,8 +92,8 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
 
 
 def _stable(omega_squared: Array, speed: float) -> Array:
-    """Ascending squared frequencies with those that are rounding as zero. Raises NotConverged if one is
-    negative.
+    """Return ascending squared frequencies with rounding set to zero; raise NotConverged if one
+    is negative.
     """
     noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
     omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
@@ -101,7 +106,7 @@ def _stable(omega_squared: Array, speed: float) -> Array:
 
 
 def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
-    """Modes of turning bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
+    """Compute the modes of rotating bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
 
     With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
     skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch 1974).
@@ -183,6 +188,7 @@ def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeN
 
 
 def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
+    """Name the modes of one frequency by their class and the coordinates that move most."""
     energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
     pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
     pinion_fraction = float(energy[pinions].sum() / energy.sum())
@@ -201,7 +207,9 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
 
 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
-    """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
+    """Return symbols of the bodies that move in a mode and how, from the amplitudes (dof,) of all coordinates
+    as lengths.
+    """
     letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
     for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
         body, _, letter = label.rpartition(":")
@@ -217,8 +225,11 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
 
 
 def _motion(moves: set[str]) -> str:
-    """`T-R-A-tilt` from the letters of the coordinates that move; a single direction of translation is named,
-    and so is what is neither a motion nor a tilt of the rigid body, up to its first blank.
+    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of the coordinates that
+    move.
+
+    A single direction of translation is named, and so is a motion that the rigid body does not have, up to
+    its first blank.
     """
     letters = []
     if moves & {"x", "y"}:

@@ -47,7 +47,7 @@ class Ratings:
 
 
 def compute_ratings(machine: Machine, speed_rpm: float) -> Ratings:
-    """Return the ratings at a pinion speed.
+    """Compute speeds, torques, powers and frequencies of the machine at a pinion speed.
 
     Parameters
     ----------
@@ -189,5 +189,6 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
 
 
 def _body_speeds(layout: Layout, speed_rpm: float) -> Array:
+    """Return the speed of each body, rpm, from the speed of the pinions."""
     gear = speed_rpm * layout.pinion_teeth / layout.gear_teeth
     return np.concatenate([np.full(len(layout.pinions), speed_rpm), np.full(len(layout.gears), gear)])

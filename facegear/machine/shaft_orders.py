@@ -58,7 +58,7 @@ class TurnOrders:
     error: ComplexArray
 
     def select(self, rows: Sequence[int]) -> "TurnOrders":
-        """Return some of the orders.
+        """Return the orders in some rows.
 
         Parameters
         ----------
@@ -130,6 +130,7 @@ def _errors_of(machine: Machine, gear: str) -> Machine:
 
 
 def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return zeros in place of two curves."""
     return np.zeros_like(curves[0]), np.zeros_like(curves[1])
 
 
@@ -206,7 +207,7 @@ class LoadedMachine:
         return np.asarray(np.linalg.solve(self._dynamic(speed, omega), torque))
 
     def flank_forces(self, motion: ComplexArray) -> ComplexArray:
-        """Elastic forces of the flanks that carry.
+        """Return the complex amplitudes of the elastic forces of the flanks that carry load.
 
         Parameters
         ----------
@@ -221,7 +222,7 @@ class LoadedMachine:
         return np.asarray(self.springs @ (self.linear.rows @ motion))
 
     def _dynamic(self, speed: float, omega: float) -> ComplexArray:
-        """Dynamic stiffness (n, n) at a speed of the pinions and a frequency, both in rad/s."""
+        """Return the dynamic stiffness (n, n) at a pinion speed and a frequency, both in rad/s."""
         linear, rows = self.linear, self.linear.rows
         stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows

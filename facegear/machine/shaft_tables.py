@@ -147,6 +147,7 @@ def deflection_table(
 
 
 def _stations(shaft: Shaft) -> Array:
+    """Return the positions along a shaft, m, at which its deflection is listed."""
     ends = np.cumsum([segment.length for segment in shaft.segments])
     bearing_positions = [bearing.position for bearing in shaft.bearings]
     return np.unique(

@@ -1,4 +1,13 @@
-"""Static equilibrium under torque, with every force and moment in balance."""
+"""Static equilibrium under torque, with every force and moment in balance.
+
+Whether a static result is one: every force and moment on every body in balance, counted anew. The solvers
+keep an account of their own unknowns. This one goes back to the whole matrices, all degrees of freedom
+included, so that nothing that a solver leaves out can hide.
+
+Static equilibrium: who carries load when the machine stands still under torque. Every flank is a one-sided
+contact, every bearing a spring, with clearance or without: one convex problem at each position, solved to the
+accuracy of its numbers. Each result is held against the balance of all forces and moments on every body.
+"""
 
 from dataclasses import dataclass
 

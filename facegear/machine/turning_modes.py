@@ -4,6 +4,10 @@
 
 with W the speed of the pinions. Damping that turns with a body (N) may feed energy from its rotation into a
 motion that lags behind it: a mode whose l has a positive real part grows.
+
+Damped modes of a machine whose face gears bend, over speed: a coupled Campbell diagram. Modes at neighbouring
+speeds are the same line where their shapes are alike by the modal assurance criterion (MAC), the square of
+`a^H M b` by the product of `a^H M a` and `b^H M b`, with the mass matrix M as weight.
 """
 
 from collections.abc import Sequence
@@ -173,7 +177,7 @@ def wave_parts(
 
 
 def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
-    """Elastic coordinates of a gear by nodal diameters."""
+    """Return the indices of a gear's elastic coordinates by number of nodal diameters."""
     members: dict[int, list[int]] = {}
     for number, label in enumerate(linear.labels):
         owner, _, letter = label.rpartition(":")
@@ -183,8 +187,10 @@ def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
 
 
 def _forward(linear: LinearModel, shapes: ComplexArray, members: list[int], sign: float) -> Array:
-    """With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
-    the other |a - i b| / 2.
+    """Return the part of each shape's squared amplitude that lies in the wave turning with the gear.
+
+    With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
+    the other |a - i b| / 2. `sign`: sense in which the gear turns.
     """
     cosine = [number for number in members if linear.labels[number].endswith("c")]
     sine = [number for number in members if linear.labels[number].endswith("s")]

@@ -68,7 +68,7 @@ class FlankContacts:
     slopes: Array
 
     def at(self, rows: Sequence[int]) -> "FlankContacts":
-        """Return the solutions at some of the forces.
+        """Return the solved contacts at some of the forces.
 
         Parameters
         ----------
@@ -96,12 +96,12 @@ class TableError:
 
     @property
     def percent(self) -> tuple[float, float]:
-        """Rms and largest, in percent."""
+        """Root mean square and largest error, percent."""
         return 100.0 * self.rms, 100.0 * self.largest
 
     @property
     def excess(self) -> float:
-        """The larger of both over what is aimed at."""
+        """Larger of both errors over its goal, dimensionless."""
         return max(self.rms / RMS, self.largest / LARGEST)
 
 
@@ -255,7 +255,7 @@ def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
 
 
 def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, AnyArray]:
-    """Return the arrays LAW_ARRAYS.
+    """Return the load-dependent law as the arrays that LAW_ARRAYS lists.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, Any
 
 
 def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> Array:
-    """Return the forces of a table of LAW_ARRAYS.
+    """Return the forces of one table of a stored law over deflection and mesh phase.
 
     Parameters
     ----------

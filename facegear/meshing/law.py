@@ -1,4 +1,8 @@
-"""Interface of a contact's force for statics, dynamics, tangents and load sharing."""
+"""Interface of a contact's force for statics, dynamics, tangents and load sharing.
+
+Laws of contacts at some phases of the mesh period, as statics takes them. The kernel's counterparts are in
+`facegear/_kernels/src/statics/laws.hpp`.
+"""
 
 from typing import Any, NamedTuple, Protocol
 

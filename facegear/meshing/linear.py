@@ -68,17 +68,17 @@ class LinearLaw:
 
     @cached_property
     def levels(self) -> Array:
-        """The edge alone."""
+        """Deflections at which the law's pieces begin: the edge of contact alone."""
         return np.zeros((1, self.contacts))
 
     @property
     def straight(self) -> bool:
-        """The force is linear in the amount."""
+        """Whether the force is linear in the deflection beyond the edge: always."""
         return True
 
     @property
     def steepest(self) -> Array:
-        """Sum of the amplitudes of k, (M,)."""
+        """Upper bound (M,) of the stiffness of each contact over the phase: sum of its amplitudes, N/m."""
         return self._bounds[self.kind]
 
     @property
@@ -89,10 +89,12 @@ class LinearLaw:
 
     @property
     def _amplitudes(self) -> Array:
+        """Amplitude of each order of the stiffness series of each kind of contact."""
         return np.hypot(self.fourier[:, 0], self.fourier[:, 1])
 
     @property
     def _bounds(self) -> Array:
+        """Upper bound of the stiffness of each kind of contact."""
         pieces = np.array([np.abs(piece.coefficients).sum() for piece in self.pieces] or [0.0])
         return np.asarray(self._amplitudes.sum(axis=1) + pieces)
 
@@ -204,7 +206,7 @@ class LinearLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its numbers as the integrator takes them."""
+        """Numbers of the law as the integrator's kernels take them."""
         return {
             "fourier": np.ascontiguousarray(self.fourier, dtype=float),
             "kind": np.ascontiguousarray(self.kind, np.int64),

@@ -55,6 +55,7 @@ class PiecewiseCubics:
         return np.moveaxis(values.reshape(contacts.shape), 0, -1)
 
     def _at_phases(self, cycles: Array) -> "_AtPhases":
+        """Return the cubics at mesh phases, from a cache of at most MAX_PHASE_SETS sets."""
         phases, cache = cycles.tobytes(), self.cache
         at_phases = cache.get(phases)
         if at_phases is None:
@@ -100,7 +101,7 @@ class LoadDependentLaw:
 
     @property
     def breaks(self) -> Array:
-        """None: Fourier series are smooth in the phase."""
+        """Phases at which the law is not smooth: none, as Fourier series are smooth."""
         return np.zeros(0)
 
     @cached_property
@@ -110,12 +111,12 @@ class LoadDependentLaw:
 
     @property
     def straight(self) -> bool:
-        """The force is a cubic between two levels."""
+        """Whether the force is linear in the deflection beyond the edge: it is cubic between levels."""
         return False
 
     @cached_property
     def steepest(self) -> Array:
-        """Bounds of the slopes, (M,)."""
+        """Upper bound (M,) of the slope of each contact's force over phase and deflection, N/m."""
         return self._steepest[self.kind]
 
     @cached_property
@@ -136,10 +137,12 @@ class LoadDependentLaw:
 
     @cached_property
     def _levels(self) -> Array:
+        """Deflection levels of each kind of contact, m."""
         return np.array([table.levels for table in self.tables])
 
     @cached_property
     def _coefficients(self) -> Array:
+        """Coefficients of the cubics between levels, as Fourier series over the phase."""
         forces, slopes = (
             np.array([getattr(table, name) for table in self.tables]) for name in ("forces", "slopes")
         )
@@ -181,6 +184,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _pieces(self) -> PiecewiseCubics:
+        """Cubics between levels, evaluated at phases."""
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
@@ -195,6 +199,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _mean(self) -> "LoadDependentLaw":
+        """Law of the mean force over the phase."""
         return self._with_series(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
@@ -221,6 +226,7 @@ class LoadDependentLaw:
         return self._with_series(series, self.kind)
 
     def _with_series(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
+        """Return a law with the same levels and other series of forces and slopes."""
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(
             tuple(ForceTable(table.levels, *table_series) for table, table_series in tables), kind
@@ -251,7 +257,7 @@ class LoadDependentLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its numbers as the integrator takes them."""
+        """Numbers of the law as the integrator's kernels take them."""
         kind = np.ascontiguousarray(self.kind, np.int64)
         return {"table": _columns(self), "levels": self._levels, "kind": kind}
 
@@ -279,7 +285,9 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
 
 @lru_cache(maxsize=16)
 def _columns(law: LoadDependentLaw) -> Array:
-    """Coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; shared, only read."""
+    """Return coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; they are shared
+    and must not be changed.
+    """
     return np.ascontiguousarray(np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)))
 
 

@@ -49,22 +49,22 @@ class PowerLaw:
 
     @property
     def breaks(self) -> Array:
-        """None: the law is smooth in the phase."""
+        """Phases at which the law is not smooth: none."""
         return np.zeros(0)
 
     @property
     def straight(self) -> bool:
-        """The force is a power of the amount."""
+        """Whether the force is linear in the deflection beyond the edge: it is a power."""
         return False
 
     @property
     def levels(self) -> Array:
-        """The edge, and where the power begins, (2, M)."""
+        """Deflections (2, M) at which the law's pieces begin: the edge, and where the power begins, m."""
         return np.repeat([[0.0], [self.level]], self.contacts, axis=1)
 
     @property
     def steepest(self) -> Array:
-        """Slope at the largest amount and factor, (M,)."""
+        """Slope (M,) at the largest deflection and phase factor, N/m."""
         return np.full(self.contacts, (1.0 + self.depth) * self._slope(np.array(self.largest)))
 
     @property
@@ -148,7 +148,7 @@ class PowerLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its numbers as the integrator takes them."""
+        """Numbers of the law as the integrator's kernels take them."""
         return {
             "factor": np.array([[[0.0, 0.0], [1.0, self.depth]]]),
             "size": self.size,
@@ -169,13 +169,16 @@ class PowerLaw:
         return (3.0 - n) * x ** (n - 2.0), (n - 2.0) * x ** (n - 3.0)
 
     def _factor(self, cycles: Array) -> Array:
+        """Return the factor by which the force varies with the mesh phase, in cycles."""
         return np.asarray(1.0 + self.depth * np.cos(2.0 * np.pi * cycles))
 
     def _shape(self, x: Array) -> Array:
+        """Return the force at compressions `x`, m: a power law, cubic below `level`."""
         a, b = self._start
         return self.size * np.where(x < self.level, x**2 * (a + b * x), x**self.exponent)
 
     def _slope(self, x: Array) -> Array:
+        """Return the derivative of the force by the compression, N/m."""
         a, b = self._start
         high = self.exponent * np.maximum(x, self.level) ** (self.exponent - 1.0)
         return self.size * np.where(x < self.level, x * (2.0 * a + 3.0 * b * x), high)

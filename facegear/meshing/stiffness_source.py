@@ -344,6 +344,7 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
 
 
 def _vary_samples(samples: Array, factor: float) -> Array:
+    """Scale the variation of samples about their mean by a factor."""
     return samples + (factor - 1.0) * (samples - samples.mean())
 
 

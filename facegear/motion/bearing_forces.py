@@ -31,6 +31,7 @@ BEARING_COLUMNS = (
     "peak_n",
     "class",
 )
+"""Columns of the table of bearing forces; forces in N."""
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
@@ -98,6 +99,7 @@ class _BearingMaps(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
+    """Return the matrices from reduced displacement and velocity to bearing forces."""
     linear = machine.linear
     displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
     in_rings = np.zeros(linear.translations.shape, dtype=bool)
@@ -113,8 +115,10 @@ def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
 
 
 def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Integers) -> tuple[Array, Array]:
-    """Matrices (n, coordinates) that map reduced displacement and velocity to the force or moment on springs
-    and dampers along some coordinates.
+    """Return matrices (n, coordinates) from reduced displacement and velocity to forces on springs and
+    dampers.
+
+    The forces and moments act along the given coordinates.
     """
     basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]

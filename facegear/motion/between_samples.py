@@ -34,7 +34,7 @@ def local_maxima(curve: Array) -> tuple[Integers, Array]:
 
 
 def _valley(curve: Array) -> float:
-    """Smallest value before one that is larger than the first."""
+    """Return the smallest value that precedes the first value larger than the curve's first one."""
     beyond = ~(curve <= curve[0])
     return float(curve[: beyond.argmax() if beyond.any() else curve.size].min())
 
@@ -232,6 +232,7 @@ def finer(values: Array, factor: int, wraps: bool) -> Array:
 
 
 def _located_maxima(values: Array, wraps: bool) -> Array:
+    """Return the largest value of each column between the samples, by local polynomials."""
     largest = np.asarray(values.max(axis=0))
     if len(values) <= 2 * REACH:
         return largest
@@ -269,9 +270,12 @@ def _tops(values: Array, rows: Integers) -> Array:
 
 
 def _values_between() -> Array:
-    """Values (2 LOOKS + 1, 2 REACH + 1) of the polynomials that are one at each of the samples."""
+    """Return the matrix (2 LOOKS + 1, 2 REACH + 1) from samples to values of their polynomial at points
+    between them.
+    """
     samples = np.arange(-REACH, REACH + 1.0)
     return np.asarray(np.vander(FINE_STEPS, samples.size) @ np.linalg.inv(np.vander(samples)))
 
 
 _POLYNOMIAL = _values_between()
+"""Matrix from values at neighbouring samples to values of their polynomial between them."""

@@ -20,6 +20,28 @@ class Motion(StrEnum):
 
 
 @dataclass(frozen=True)
+class Look:
+    """Motion to which one start has come.
+
+    Attributes
+    ----------
+    period : int
+        In mesh periods where the motion is periodic, else 0.
+    motion : Motion or None
+        Class of motion; None where the run did not close and was watched no longer.
+    """
+
+    period: int
+    motion: Motion | None = None
+
+    def __str__(self) -> str:
+        """Return `period-n`, the class of motion, or `irregular`."""
+        if self.period:
+            return f"period-{self.period}"
+        return "irregular" if self.motion is None else self.motion.value
+
+
+@dataclass(frozen=True)
 class Settings:
     """How a steady state is sought.
 

@@ -1,4 +1,9 @@
-"""Requests to run a motion: many of them are integrated side by side where they share a structure."""
+"""Requests to run a motion: many of them are integrated side by side where they share a structure.
+
+Run plans: computations made of runs, each of which depends on what the last one has shown. A run plan
+requests a run by yielding it and receives its result. The same code watches one machine alone and many whose
+runs are integrated side by side.
+"""
 
 from collections import defaultdict
 from collections.abc import Generator, Mapping, Sequence
@@ -146,7 +151,7 @@ def run_stretches(
 
 
 def _groups(stretches: Sequence[RunRequest]) -> list[list[int]]:
-    """Numbers of the stretches that may run side by side."""
+    """Return groups of requests, by number, that may be integrated side by side."""
     structures: list[motion.System] = []
     structure_of: dict[motion.System, int] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
@@ -175,7 +180,9 @@ def _in_lanes(periods: Mapping[int, int], fewest: int) -> list[int]:
 
 
 def _busy(lengths: Sequence[int], lanes: int) -> int:
-    """Time that lanes are busy with runs of these lengths, each taken by the first lane that is free."""
+    """Return how long parallel lanes are busy with runs of these lengths, each taken by the first lane that
+    is free.
+    """
     ends = [0] * lanes
     for length in lengths:
         heapreplace(ends, ends[0] + length)
@@ -183,6 +190,7 @@ def _busy(lengths: Sequence[int], lanes: int) -> int:
 
 
 def _alone(stretch: RunRequest, last_periods: int | None) -> RunResult | NotConverged:
+    """Run one request by itself; return its failure if it does not converge."""
     try:
         run = stretch.run()
     except NotConverged as failure:
@@ -288,7 +296,7 @@ def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
 
 
 def _largest_group(requests: Mapping[int, RunRequest]) -> list[int]:
-    """Numbers of the plans in the largest group that requests runs of one kind."""
+    """Return the numbers of the run plans in the largest group whose requests may be integrated together."""
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     for number, stretch in requests.items():
         groups[stretch.kind].append(number)

@@ -225,6 +225,6 @@ def law_loads_table(
 
 
 def _largest(table: pd.DataFrame, quantity: str, mesh: object) -> float:
-    """Largest value of a quantity of a mesh, 0 where the table has none."""
+    """Return the largest value of a quantity of a mesh in a table, 0 where the table has none."""
     values = table.loc[(table["quantity"] == quantity) & (table["body_or_mesh"] == mesh), "value"]
     return float(values.max()) if len(values) else 0.0

@@ -126,10 +126,11 @@ class _Search:
         return tuple(symmetries_so_far)
 
     def _shifts(self) -> list[float]:
-        """Shifts at which the first contact that changes over the mesh period may be like another contact.
+        """Return shifts, in mesh periods, at which the first contact that varies over the period may equal
+        another contact.
 
-        The change may be in its force law, or in its error or load, both up to their sign. Where nothing
-        changes, only the shift 0 is examined.
+        The variation may be in its force law, or in its error or load, both up to their sign. Where nothing
+        varies, only the shift 0 is examined.
         """
         forces = self._forces(0.0)[0]
         signed_signals = np.stack([self._errors(0.0), self._load(0.0)[0] @ self.jacobian.T])
@@ -148,13 +149,15 @@ class _Search:
         return [0.0]
 
     def _forces(self, shift: float) -> tuple[Array, Array]:
-        """Forces (amounts, phases, contacts) of amounts above the upper edge and below the lower one."""
+        """Return forces (amounts, phases, contacts) at deflections above the upper edge and below the lower
+        edge.
+        """
         amounts = np.broadcast_to(self.amounts[:, None, None], (self.amounts.size, PHASES, self.count))
         force = self.system.law.force
         return force(self.cycles + shift, amounts), force(self.cycles + shift, -amounts)
 
     def _errors(self, shift: float) -> Array:
-        """Transmission errors e (phases, contacts), m."""
+        """Return the transmission errors e (phases, contacts), m, shifted by a part of the mesh period."""
         values = stacked_values(self.system.error, self.cycles + shift)
         return values[:, self.system.error_kind[: self.count]]
 
@@ -181,13 +184,16 @@ class _Search:
         return fits
 
     def _permutations(self, shift: float) -> Iterator[tuple[Integers, Array]]:
-        """Signed permutations of contacts (contacts,) that keep laws, meshes and Gram matrices."""
+        """Yield permutations of the contacts with signs, (contacts,) each, that keep laws, meshes and Gram
+        matrices.
+        """
         fits = self._compatible(shift)
         yield from self._extend([], [], fits)
 
     def _extend(
         self, contacts: list[int], signs: list[float], fits: AnyArray
     ) -> Iterator[tuple[Integers, Array]]:
+        """Yield permutations of contacts with signs that extend a partial one and keep the equations."""
         index, pairs = len(contacts), self.system.pairs
         if index == self.count:
             yield np.array(contacts, dtype=np.int64), np.array(signs)
@@ -229,9 +235,9 @@ class _Search:
         )
 
     def _known_images(self, contacts: Integers, signs: Array, shift: float) -> tuple[Array, Array]:
-        """Rows (rows, n) whose images are known, and these images.
+        """Return rows (rows, n) whose images under a permutation of contacts are known, and these images.
 
-        They are those of the Jacobian, friction and load, their products with the couplings, and the
+        The rows are those of the Jacobian, friction and load, their products with the couplings, and the
         directions that bearings with clearance feel beside them.
         """
         sign_column = signs[:, None, None]
@@ -249,7 +255,7 @@ class _Search:
         return vectors, mapped
 
     def _by_group(self, rows: Sequence[Array]) -> Array:
-        """Rows (k, n) with the coordinates of one group alone, group by group.
+        """Return rows (k, n), each cut to the coordinates of one group, group by group.
 
         The image of a row holds for its part in each group, since a symmetry does not mix groups.
         """
@@ -257,7 +263,9 @@ class _Search:
         return np.concatenate([whole * np.isin(np.arange(size), group) for group in self.groups])
 
     def _friction(self, shift: float) -> Array:
-        """Vector (contacts, phases, n) that friction adds for a unit force of each contact."""
+        """Return the vector (contacts, phases, n) that friction adds to the load for a unit force of each
+        contact.
+        """
         rubbing = self.system.rubbing
         vectors = np.zeros((self.count, PHASES, self.system.size))
         if rubbing is not None:
@@ -343,7 +351,7 @@ class _Search:
 
 
 def _groups(keys: Array) -> list[Integers]:
-    """Numbers of the coordinates with equal keys (n, 2)."""
+    """Group coordinates: return the numbers of the coordinates with equal keys (n, 2), group by group."""
     scale = np.maximum(np.abs(keys).max(axis=0), 1e-300)
     groups: list[list[int]] = []
     for number, key in enumerate(keys):
@@ -364,24 +372,25 @@ def _near(first: Array, second: Array, scale: float = 0.0) -> AnyArray:
 
 
 def _curves_agree(curves: Array, other_curves: Array, scale: float = 0.0) -> AnyArray:
-    """Mask (contacts, contacts) of the curves (..., contacts) and other curves that agree with each other."""
+    """Return which curves (..., contacts) agree with which other curves, as a mask (contacts, contacts)."""
     first, second = (values.reshape(-1, values.shape[-1]) for values in (curves, other_curves))
     size = max(np.abs(first).max(initial=0.0), scale, 1e-300)
     return np.asarray(np.abs(first[:, :, None] - second[:, None]).max(axis=0) <= SYMMETRIC * size)
 
 
 def _only_direction(rows: Array) -> Array:
-    """The longest direction (n,) in the span of some rows (2, n)."""
+    """Return the longest direction (n,) in the span of two rows (2, n)."""
     _, sizes, axes = np.linalg.svd(rows)
     return np.asarray(sizes[0] * axes[0])
 
 
 def _rank(rows: Array) -> int:
+    """Return the numerical rank of rows."""
     return int(np.linalg.matrix_rank(rows, tol=SYMMETRIC * np.linalg.norm(rows, 2)))
 
 
 def _scale_rows(rows: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Rows and their images (..., n) as matrices over their size."""
+    """Return rows and their images as matrices (rows, n), both divided by the size of the rows."""
     first, second = (values.reshape(-1, values.shape[-1]) for values in rows)
     size = max(np.abs(first).max(initial=0.0), 1e-300)
     is_nonzero = np.abs(first).max(axis=1, initial=0.0) > 0.0

@@ -1,4 +1,8 @@
-"""Linear functions of a motion, and forces of meshes and bearings, at evenly spaced instants."""
+"""Linear functions of a motion, and forces of meshes and bearings, at evenly spaced instants.
+
+A periodic motion is the Fourier series through its samples, so that the instants may lie closer than the
+samples. Any other motion has its samples alone.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -59,7 +63,7 @@ def press_in(deflections: Array, errors: Array, lower: Array, upper: Array) -> N
 
 
 def split_loads(forces: Array, rounding: float, loads: Array) -> None:
-    """Write the loads of both flanks of meshes.
+    """Write the loads of the drive and back flank of each mesh into arrays, N.
 
     Parameters
     ----------
@@ -78,7 +82,7 @@ class Track(Protocol):
 
     @property
     def count(self) -> int:
-        """The number K of instants."""
+        """Number K of instants of the motion."""
 
     def along(self, displacement_weights: Array, velocity_weights: Array) -> Array:
         """Compute y displacement_weights + dy/dt velocity_weights at each instant.

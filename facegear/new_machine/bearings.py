@@ -159,6 +159,7 @@ def split_of(machine: Machine) -> Split:
 
 
 def _group_ratio(run: HuntingCycle) -> float:
+    """Return the largest ratio of a mesh's load to its group's mean, nan without groups."""
     ratios = [run.group_ratios(group).max() for group in run.groups if group.splits_load]
     return float(max(ratios, default=np.nan))
 

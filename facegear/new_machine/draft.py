@@ -156,6 +156,7 @@ class Draft:
         return resolved_values(config_of(values))
 
     def _spring_values(self, radial: float) -> dict[str, float]:
+        """Return bearing stiffness along x, y and z, N/m, from a radial one."""
         axial = self.wishes.axial_bearing_n_per_m
         return {"x": radial, "y": radial, "z": radial if axial is None else axial}
 
@@ -235,9 +236,11 @@ class Draft:
         return cuts
 
     def _gear_pitch_radius(self) -> float:
+        """Return the pitch radius of the face gear, m."""
         return 0.5e-3 * self.wishes.module_mm * self.wishes.face_gear_teeth
 
     def _bearing(self, radial: float) -> str:
+        """Return a bearing as text of the config."""
         springs = self._spring_values(radial)
         return "{" + ", ".join(f"{axis}: {stiffness:.3g}" for axis, stiffness in springs.items()) + "}"
 
@@ -268,13 +271,14 @@ class Draft:
         return "".join(lines)
 
     def _shaper_reason(self) -> str:
+        """Say why the shaper has its number of teeth."""
         if self.more_shaper_teeth == MORE_SHAPER_TEETH[0]:
             return "three more than the pinion, which localises the contact"
         count = count_noun(self.more_shaper_teeth, "tooth", "teeth")
         return f"{count} more than the pinion, which spreads the contact: pitting allows no more"
 
     def _reasons(self) -> dict[str, str]:
-        """Reason of each value, or that it was given."""
+        """Return the reason of each value of the config, or that the user gave it."""
         low, high = (1e3 * radius for radius in self.teeth.face_limits)
         face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
         soft = "; soft bearings let the inputs share between both gears" if self.wishes.idlers else ""
@@ -344,15 +348,17 @@ def _ring(outer_mm: float, inner_mm: float, width_mm: float) -> tuple[float, flo
 
 
 def _short(value: float) -> float:
+    """Round a number to four digits."""
     return float(f"{value:.4g}")
 
 
 def _text(value: float) -> str:
+    """Return a number with four digits as text."""
     return f"{value:.4g}"
 
 
 def _gears(wishes: MachineWishes) -> tuple[str, ...]:
-    """Face gears; idlers need two."""
+    """Return the face gears that the machine needs: both if there are idlers."""
     return ("lower", "upper") if wishes.idlers else ("upper",)
 
 

@@ -88,6 +88,7 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
 
 
 def _poor_split(draft: Draft, bearings: Bearings) -> str:
+    """Say by how much the load is shared unevenly and what would help."""
     wished_bearings = [name for name in RADIAL if getattr(draft.wishes, name) is not None]
     least = smallest_torque(draft.closed_form(), bearings, draft.wishes.torque_n_m)
     width = 1e-3 * (draft.outer - draft.inner)
@@ -221,6 +222,7 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
 
 
 def _resonances(draft: Draft, bearings: Bearings) -> str:
+    """Name the resonances near the speed of the machine."""
     wishes = draft.wishes
     slow, fast = (max(factor * wishes.speed_rpm, 1.0) for factor in SPEEDS)
     frequencies = np.unique(np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies, 1))
@@ -237,6 +239,7 @@ def _resonances(draft: Draft, bearings: Bearings) -> str:
 
 
 def _text(number: float) -> str:
+    """Return a number with four digits as text."""
     return format_number(number, 4, group_digits=False)
 
 

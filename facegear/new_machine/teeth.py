@@ -65,10 +65,12 @@ class _Refusals:
     best_ratio: float = 0.0
 
     def add(self, reason: str) -> None:
+        """Count one more design refused for a reason."""
         self.counts[reason] = self.counts.get(reason, 0) + 1
 
     @property
     def most_frequent(self) -> str:
+        """Reason for which most designs were refused."""
         return max(self.counts, key=lambda reason: self.counts[reason])
 
 
@@ -144,6 +146,7 @@ def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
 
 
 def _require_numbers(wishes: ToothWishes) -> None:
+    """Refuse numbers of teeth out of range."""
     if not 5 <= wishes.pinion_teeth <= 500:
         raise ConfigError("pinion_teeth", wishes.pinion_teeth, "from 5 to 500")
     if not wishes.pinion_teeth < wishes.face_gear_teeth <= 2000:
@@ -156,7 +159,7 @@ def _require_numbers(wishes: ToothWishes) -> None:
 
 
 def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDesign]:
-    """Teeth without a face yet, the highest first."""
+    """Yield designs of the teeth without a face yet, those with the highest teeth first."""
     module = 1e-3 * wishes.module_mm
     thinning = THINNING * module if wishes.thinning_um is None else 1e-6 * wishes.thinning_um
     heights = _one_or(wishes.pinion_addendum_modules, HEIGHTS)
@@ -233,10 +236,12 @@ def _place_face(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tu
 
 
 def _given_or(wish: float | None, choice: float) -> float:
+    """Return the user's value, or the choice where none is given."""
     return choice if wish is None else wish
 
 
 def _one_or(wish: float | None, choices: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the user's value alone, or all choices where none is given."""
     return choices if wish is None else (wish,)
 
 

@@ -120,6 +120,7 @@ def _surfaces(section: Section) -> tuple[list[int], list[int]]:
 
 
 def _polygon(corners: Array) -> int:
+    """Add a polygon of corners (radius, height) to gmsh and return its surface."""
     points = [gmsh.model.occ.addPoint(r, height, 0.0) for r, height in corners]
     lines = [
         gmsh.model.occ.addLine(first, last)
@@ -174,6 +175,7 @@ def reentrant(corners: Array) -> Array:
 
 
 def _quads(surface: int) -> Integers:
+    """Return the nodes of the nine-node quadrilaterals of a surface; refuse other elements."""
     types, _, nodes = gmsh.model.mesh.getElements(2, surface)
     if list(types) != [QUADRANGLE]:
         raise InvalidInput("corners of the section", "no mesh of quadrilaterals", "a simpler section")

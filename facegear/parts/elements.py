@@ -141,7 +141,7 @@ def gradients(elements: Elements) -> tuple[Array, Array]:
 
 
 def displacements(elements: Elements) -> Array:
-    """Return U, V, W of the shapes.
+    """Return the displacements U, V, W of the shape functions in radial, circumferential and axial direction.
 
     Parameters
     ----------

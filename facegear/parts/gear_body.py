@@ -186,7 +186,7 @@ class SolvedBody:
     changes: tuple[Array, ...]
 
     def static(self, patch: Patch) -> Array:
-        """Return the compliances H_n with the hub held.
+        """Return the static compliances H_n at a mesh by circumferential order, with the hub held.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class SolvedBody:
         return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
 
     def modal(self, patch: Patch) -> Array:
-        """Return the part of `static` that the modes hold.
+        """Return the part of the static compliances that the computed modes hold.
 
         Parameters
         ----------
@@ -364,7 +364,7 @@ def reduced_body(
 
 
 def _blocks(matrices: list[Array]) -> Array:
-    """Matrices along the diagonal; those without entries take no room."""
+    """Arrange matrices along the diagonal of one matrix; matrices without entries take no place."""
     size = sum(len(matrix) for matrix in matrices)
     return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
         size, size

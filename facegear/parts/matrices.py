@@ -44,12 +44,12 @@ class Polynomial:
     parts: tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]
 
     def at(self, order: int) -> sp.csr_matrix:
-        """Return the matrix of an order.
+        """Return the matrix of one circumferential order.
 
         Parameters
         ----------
         order : int
-            The order n.
+            Circumferential order n, number of nodal diameters.
 
         Returns
         -------
@@ -177,6 +177,7 @@ def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> P
 
 
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
+    """Build the matrices of a bilinear form as a polynomial in the circumferential order."""
     cross_terms = form(elements, plain, tensor, by_order)
     parts = (
         form(elements, plain, tensor, plain),
@@ -187,7 +188,7 @@ def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array
 
 
 def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Array, Array]:
-    """Elasticity (6, 6, elements, 1) and density (elements, points) of every element."""
+    """Return elasticity (6, 6, elements, 1), Pa, and density (elements, points), kg/m^3, of every element."""
     body = isotropic(section.material)
     elasticity = np.repeat(body[:, :, None], len(mesh.quads), axis=2)
     density = np.full(elements.r.shape, section.density)
@@ -205,7 +206,7 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
 
 
 def _free(section: Section, elements: Elements) -> Integers:
-    """Return the degrees of freedom of the shapes that stand on no held edge."""
+    """Return the degrees of freedom of shape functions that are not on a held edge."""
     is_held = np.zeros(elements.shape_points.shape[1], bool)
     points = elements.shape_points.T
     for (first, last), is_fixed in zip(section.edges, section.is_edge_held, strict=True):

@@ -178,6 +178,7 @@ def _fix_signs(shapes: Array) -> Array:
 
 
 def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
+    """Project the body's matrices on the modes of one circumferential order."""
     factor = around(order)
     rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
     return OrderModes(

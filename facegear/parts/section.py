@@ -56,7 +56,7 @@ class Layer:
 
     @property
     def depth(self) -> float:
-        """Distance (m) of its faces."""
+        """Distance of the layer's two faces, m."""
         return self.front - self.back
 
     @property
@@ -121,7 +121,7 @@ def rectangle(inner: float, outer: float, back: float, front: float) -> Array:
 
 
 def distinct(corners: Array) -> Array:
-    """Remove the corners that repeat the one before.
+    """Remove each corner that repeats the corner before it.
 
     Parameters
     ----------
@@ -154,6 +154,7 @@ def anticlockwise(corners: Array) -> Array:
 
 
 def _area(corners: Array) -> float:
+    """Return the signed area of a polygon, positive if its corners run counterclockwise."""
     next_corners = np.roll(corners, -1, axis=0)
     return float(0.5 * np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0]))
 
@@ -217,6 +218,7 @@ def distance_between(first: Array, second: Array) -> float:
 
 
 def _from_edge(point: Array, edge: Array) -> float:
+    """Return the distance of a point from an edge."""
     way = edge[1] - edge[0]
     fraction = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
     return float(np.linalg.norm(point - edge[0] - fraction * way))

@@ -1,4 +1,8 @@
-"""Shafts on bearings (Timoshenko beams), condensed statically to the middle of their pinion."""
+"""Shafts on bearings (Timoshenko beams), condensed statically to the middle of their pinion.
+
+Round shafts that bend, shear and stretch (Timoshenko). Motions of a point are x, y, z, tilt_x, tilt_y, with z
+along the shaft: right-handed rotations, so that without shear dx/dz = tilt_y and dy/dz = -tilt_x.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -316,4 +320,5 @@ def _flat(blocks: Array) -> Array:
 
 
 def _symmetric(matrix: AnyArray) -> Array:
+    """Return the symmetric part of a matrix, which removes rounding."""
     return np.asarray(0.5 * (matrix + matrix.T))

@@ -1,4 +1,15 @@
-"""The layer that stands for the teeth of a face gear that bends, fitted to one sector of its ring."""
+"""The layer that stands for the teeth of a face gear that bends, fitted to one sector of its ring.
+
+Stiffness round the axis and in shear of the layer that stands for the teeth, from their own energies. Two
+waves of one order bend and twist a rim. The layer of Fourier elements on a rim of the same thickness gets the
+two numbers with which it stores as much energy in both as the real teeth do. What fills the layer is its
+volume of teeth.
+
+Elastic energy of real teeth on a rim round which waves travel: one tooth with its rim by finite elements. In
+a wave of n nodal diameters every tooth moves as its neighbour does, turned by a pitch and later by the phase
+n times the pitch, so that one sector is the whole ring. On the back of the rim the motion along the axis is
+given, all other motions are free.
+"""
 
 from dataclasses import replace
 from math import pi
@@ -22,6 +33,7 @@ from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.tooth_mesh import FeTooth, gear_tooth
 
 SAME_HEIGHT = 1e-9
+"""Difference of two heights, m, up to which they are equal: rounding of coordinates of 0.1 m."""
 
 
 def rim_below(section: Section) -> float:
@@ -61,7 +73,9 @@ def rim_below(section: Section) -> float:
 SIZES = (0.5, 1.6, 0.9)
 """Profile, width and thickness of the elements in modules."""
 ELEMENTS_AT_ONCE = 64
+"""Number of elements integrated together, which bounds memory; results do not depend on it."""
 DEGREE = 5
+"""Polynomial degree up to which integrals over elements are exact; products of quadratic shapes need 4."""
 
 
 def tooth_energies(
@@ -220,6 +234,7 @@ ORDER = 4
 ELEMENTS = (6, 4, 4)
 """Number of elements for the layer's energies: along the radius, through the rim and through the layer."""
 FIT_TOLERANCE = 1e-8
+"""Relative error up to which the layer's energies equal those of the teeth; far below the model's error."""
 
 
 def fitted_teeth(section: Section, design: PairDesign) -> Section:

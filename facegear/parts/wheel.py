@@ -1,5 +1,12 @@
 """Section of a wheel from its hub, web and rim, the size of its mesh, and the patch that a mesh presses
-on."""
+on.
+
+Area on which a mesh presses on the body of a face gear. A flank force turned into force and moment on height
+0, spread along the ring as a raised cosine, moves the pitch point in order n by W_p = c_n <W> axially and by
+V_p = c_n (<V> + n h <W / r>) round the axis, with c_n the transform of the patch and h the height of the
+pitch plane. The second part is the moment of the tangential force. Displacements are u_axial = Re[z e^(-i n
+psi)] W_p and u_round = Re[i z e^(-i n psi)] V_p.
+"""
 
 from dataclasses import dataclass
 
@@ -45,7 +52,7 @@ class Rim:
 
 
 def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
-    """Return the corners of hub, web and rim.
+    """Return the corners of a gear's section that consists of hub, web and rim.
 
     Parameters
     ----------
@@ -199,7 +206,8 @@ class Patch:
         return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
-        """Return W_p and V_p from the means below the teeth.
+        """Return the axial and circumferential displacement at a mesh from the means of the rim below the
+        teeth.
 
         Parameters
         ----------

@@ -5,7 +5,7 @@ from typing import Any, get_args, get_type_hints
 
 from facegear.build.notes import turns
 from facegear.build.tooth_pair import contact_setup
-from facegear.pipeline.asked import (
+from facegear.pipeline.conditions import (
     BODIES,
     CONTACT,
     DUTY_POINTS,
@@ -263,7 +263,7 @@ def without_loads(case: Case) -> Any:
 
 
 def gears_met(case: Case) -> list[str]:
-    """Return the face gears of the machine, as `geometry.flank_errors` names them: one alone is the upper.
+    """Return the names of the machine's face gears, upper and lower; a single one is the upper.
 
     Parameters
     ----------
@@ -381,4 +381,5 @@ def pair_where(has_contact: Callable[[Case], bool]) -> Callable[[Case], dict[str
 
 
 def _causes(section: Mapping[str, Any] | None) -> list[str]:
+    """Return the config keys that the causes of section tolerances move."""
     return [key for cause in (section or {}).get("causes", ()) for key in cause["moves"]]

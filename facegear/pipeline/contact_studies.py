@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from facegear.pipeline import asked, machine_conditions
+from facegear.pipeline import conditions, machine_conditions
 from facegear.pipeline.stage import Case, Wildcards
 from facegear.pipeline.studies import NOMINAL, Points, _id, names, points
 
@@ -24,7 +24,7 @@ def contact_points(case: Case) -> Points:
     Points
         Study, point and label of each, NOMINAL first.
     """
-    return _with_own(case, "contact", asked.contact)
+    return _with_own(case, "contact", conditions.contact)
 
 
 def friction_points(case: Case) -> Points:
@@ -59,7 +59,7 @@ def _with_own(case: Case, stage: str, has: Callable[[Case], bool]) -> Points:
 
 
 def contact_cases(case: Case) -> list[Wildcards]:
-    """Return the cases of `contact_points`.
+    """Return the case itself and the studied cases that have a contact analysis of their own.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def contact_cases(case: Case) -> list[Wildcards]:
 
 
 def friction_cases(case: Case) -> list[Wildcards]:
-    """Return the cases of `friction_points`.
+    """Return the case itself and the studied cases whose mesh losses differ from its own.
 
     Parameters
     ----------
@@ -91,6 +91,7 @@ def friction_cases(case: Case) -> list[Wildcards]:
 
 
 def _cases(case: Case, selection: Points) -> list[Wildcards]:
+    """Return the wildcards of the case itself and of the selected study points."""
     point_cases = ({"case": _id(case, *point[:2])} for point in selection[1:])
     return [{"case": str(case.values["case"])}, *point_cases]
 
@@ -118,7 +119,7 @@ def law_points(case: Case) -> Points:
 
 
 def other_laws(case: Case) -> list[Wildcards]:
-    """Return the cases of `law_points` without the machine itself.
+    """Return the studied points whose mesh law is drawn beside the machine's own.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def other_laws(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcard `case` of each point.
     """
     return _cases(case, law_points(case))[1:]
 
@@ -164,7 +165,7 @@ def law_figures(case: Case) -> list[str]:
     list[str]
         `law_loads`, and `law_sweeps` where there are laws to compare.
     """
-    has_comparison = asked.load_dependent(case) and len(law_points(case)) > 1
+    has_comparison = conditions.load_dependent(case) and len(law_points(case)) > 1
     return ["law_loads", *(["law_sweeps"] if has_comparison else [])]
 
 
@@ -185,7 +186,7 @@ def friction_studied(case: Case) -> bool:
 
 
 def contact_studied(case: Case) -> bool:
-    """Whether a study changes the contact.
+    """Whether a study changes the contact of the pair.
 
     Parameters
     ----------

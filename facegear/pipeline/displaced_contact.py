@@ -22,6 +22,7 @@ from facegear.schema.contact import Contact
 from facegear.schema.transmission import Transmission
 
 SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")
+"""Keys of a body's displacements: along the axes, µm, and about them, deg."""
 LARGEST_SHIFT, LARGEST_TURN = 5000.0, 2.0
 """Largest shift (um) and turn (deg) of a body: the bounds of assembly errors in a config."""
 
@@ -130,7 +131,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row for each flank; `DisplacedContactResult.table` describes the columns.
+        A row for each flank; `DisplacedContact.table` describes the columns.
     """
     return pd.DataFrame(
         [

@@ -5,7 +5,7 @@ from typing import Any
 from facegear.build.elastic_bodies import any_elastic
 from facegear.build.machine_layout import has_groups, split_kinds
 from facegear.build.notes import turns
-from facegear.pipeline.asked import friction, machine, root_stress, single_teeth, strength
+from facegear.pipeline.conditions import friction, machine, root_stress, single_teeth, strength
 from facegear.pipeline.stage import Case
 
 
@@ -188,7 +188,7 @@ def branches(case: Case) -> bool:
 
 
 def shares_load(case: Case) -> bool:
-    """Whether the machine splits a load among some of its meshes.
+    """Whether the machine splits one load among several of its meshes.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def shares_load(case: Case) -> bool:
 
 
 def has_groups_of_pinions(case: Case) -> bool:
-    """Whether several pinions do the same.
+    """Whether several pinions of the machine have the same function.
 
     Parameters
     ----------

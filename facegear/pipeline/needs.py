@@ -129,6 +129,7 @@ def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
 
 
 def _resolve_need(need: Need, case: Case) -> Any:
+    """Return the value of one need of a stage from the config of a case."""
     if isinstance(need, ComputedValue):
         return need.function(case)
     if isinstance(need, str):
@@ -197,7 +198,7 @@ def idle_keys(file_values: Mapping[str, Any], cases: Mapping[str, Mapping[str, A
 
 
 def _keys_read(case: Case) -> Iterator[str]:
-    """Dotted keys that the stages of a plain run, those before them and their figures take."""
+    """Yield the dotted keys that the stages of a plain run, earlier stages and figures read."""
     run = [name for name, stage in STAGES.items() if stage.condition is not None and stage.condition(case)]
     for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
         for need in STAGES[name].needs.values():
@@ -205,17 +206,19 @@ def _keys_read(case: Case) -> Iterator[str]:
 
 
 def _is_below(key: str, sections: list[str]) -> bool:
+    """Whether a config key lies in one of the sections."""
     return any(f"{key}.".startswith(f"{section}.") for section in sections)
 
 
 def _keys(need: Need) -> tuple[str, ...]:
+    """Return the config keys that a need reads."""
     if isinstance(need, ComputedValue):
         return need.sections
     return (need,) if isinstance(need, str) else need
 
 
 def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iterator[str]:
-    """Keys of a file that neither stand in a section that is read nor hold one; whole sections as one."""
+    """Yield keys of a file that no stage reads; a section that is not read at all counts as one key."""
     for name, value in section.items():
         key = f"{above}{name}"
         parts = key.split(".")
@@ -229,6 +232,7 @@ def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iter
 
 
 def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
+    """Whether the config file gives a value for a key."""
     inside: Any = file_values
     for part in key.split("."):
         if not isinstance(inside, Mapping) or part not in inside:
@@ -238,7 +242,7 @@ def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
 
 
 def _switched_off(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Keys within sections that are read, which other keys make meaningless, each with the reason."""
+    """Yield keys that are read but have no effect because of other keys, each with the reason."""
     stiffness, contact, sweep = values["mesh_stiffness"], values["contact"], values["dynamics"]["sweep"]
     if stiffness["source"] == "harmonics":
         for key in HARMONICS_GIVEN:

@@ -13,7 +13,9 @@ Values = Mapping[str, Any]
 """Plain values of a whole config."""
 Wildcards = Mapping[str, str]
 NO_WILDCARDS: Mapping[str, Any] = MappingProxyType({})
+"""Wildcards of a file that has none."""
 READABLE = {".csv", ".npz", ".parquet", ".json"}
+"""Endings of files that stages can read again."""
 FIGURES = "_figures"
 """Ending of the name of a rule that draws the figures of a chapter."""
 NUMBER = r"\d+"

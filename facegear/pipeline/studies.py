@@ -2,7 +2,7 @@
 
 from facegear.build.cases import find_numeric_axis, study_points
 from facegear.build.machine_layout import split_kinds
-from facegear.pipeline import asked, machine_conditions
+from facegear.pipeline import conditions, machine_conditions
 from facegear.pipeline.stage import Case, Wildcards
 from facegear.report.table import unit_of
 from facegear.schema.studies import Study
@@ -64,7 +64,7 @@ def nominal_and_every_point(case: Case) -> list[Wildcards]:
 
 
 def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
-    """Return the points of the studies over numbers.
+    """Return the points of studies whose axis is a number, so that results can be drawn over it.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
 
 
 def numbered_cases(case: Case) -> list[Wildcards]:
-    """Return the cases of `numbered_points`.
+    """Return the cases of the study points whose axis is a number.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def over_numbers(case: Case) -> bool:
     bool
         True if so.
     """
-    return asked.machine(case) and bool(numbered_points(case))
+    return conditions.machine(case) and bool(numbered_points(case))
 
 
 def force_figures(case: Case) -> list[str]:
@@ -138,7 +138,7 @@ def force_figures(case: Case) -> list[str]:
 
 
 def names(case: Case) -> list[str]:
-    """Return the names of the studies.
+    """Return the names of the studies of the config.
 
     Parameters
     ----------
@@ -182,11 +182,11 @@ def kinds_of_groups(case: Case) -> list[str]:
     list[str]
         The kinds.
     """
-    return split_kinds(case.values) if asked.machine(case) else []
+    return split_kinds(case.values) if conditions.machine(case) else []
 
 
 def titles(case: Case) -> list[str]:
-    """Return the title of each study.
+    """Return the title of each study of the config, in its order.
 
     Parameters
     ----------
@@ -234,4 +234,5 @@ def has_studies(case: Case) -> bool:
 
 
 def _id(case: Case, study: str, point: str) -> str:
+    """Return the name of a study point as a case."""
     return f"{case.values['case']}/studies/{study}/{point}"

@@ -21,6 +21,7 @@ ROWS = (
     *strength.ROWS,
     *variants.ROWS,
 )
+"""All stages, chapter by chapter; none takes from a later one."""
 
 STAGES = {stage.name: stage for stage in ROWS}
 """By name, in the order in which a case goes through them."""
@@ -30,7 +31,9 @@ HEAD = (
     "| stage | what it does | made where | takes from | of the config | writes |",
     "|---|---|---|---|---|---|",
 )
+"""Head of the table of stages, in Markdown."""
 EMPTY_CELL = "-"
+"""Text of a cell without content."""
 
 
 def listing() -> str:
@@ -46,6 +49,7 @@ def listing() -> str:
 
 
 def _row(stage: Stage, is_source: bool) -> str:
+    """Return the row of a stage in the table of stages of the documentation."""
     before = dict.fromkeys(source.stage for source in stage.upstream.values())
     sections = dict.fromkeys(name for need in stage.needs.values() for name in _sections(need))
     cells = (
@@ -67,7 +71,7 @@ def _made_where(stage: Stage, is_source: bool) -> str:
 
 
 def _sections(need: Need) -> list[str]:
-    """Sections of the config that a value is taken from."""
+    """Return the sections of the config from which a need takes its value."""
     if isinstance(need, ComputedValue):
         return list(need.sections)
     return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]

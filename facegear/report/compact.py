@@ -344,15 +344,18 @@ def _step(span: float) -> float:
 
 
 def _ticks(low: float, high: float) -> list[float]:
+    """Return round numbers between two ends of an axis."""
     step = _step(high - low)
     return [step * k for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
 
 
 def _points(points: Sequence[Any]) -> str:
+    """Return points as text for a polyline of a svg."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
 
 
 def _text(at: Sequence[float] | Array, words: str, anchor: str) -> str:
+    """Return a text of a svg at a point with its anchor."""
     return f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{escape(words)}</text>'
 
 
@@ -376,5 +379,6 @@ def _arrow(start: Array, end: Array) -> str:
 
 
 def _svg(parts: Sequence[str], title: str) -> str:
+    """Return a svg of its parts with a title for screen readers."""
     size = f'viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
     return f'<svg class="compact" role="img" aria-label="{escape(title)}" {size}>{"".join(parts)}</svg>'

@@ -75,6 +75,7 @@ CAPTIONS = {
     "forms, where they hold.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
+"""Caption of each figure by its name."""
 
 PAPER_NUMBERS = {
     "mode_shapes": 6,
@@ -127,11 +128,17 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 
 FRICTION = "Friction and heat"
+"""Title of the chapter on friction."""
 SHAFTS = "Shafts"
+"""Title of the chapter on shafts."""
 SHARING = "Load sharing"
+"""Title of the chapter on load sharing."""
 SHARING_MAP = "Load-sharing map"
+"""Title of the chapter on the load-sharing map."""
 POSES = "Teeth where forces put them"
+"""Title of the chapter on contact in the loaded position."""
 STUDIED_CONTACT = "Studies of the contact"
+"""Title of the chapter on studies of the contact."""
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "Tooth pair",

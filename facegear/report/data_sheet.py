@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 DATA_SHEET = "Gear data, as on a drawing"
+"""Caption of the data sheet."""
 DECIMALS = 3
 """Decimals of lengths in mm: micrometres, as drawings give them."""
 
@@ -121,6 +122,7 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
 
 
 def _mm(length: float) -> str:
+    """Return a length in mm as text with DECIMALS decimals."""
     return f"{length:.{DECIMALS}f}"
 
 

@@ -89,6 +89,7 @@ def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
 
 
 def _phasing(phasing: str | Mapping[str, float]) -> str:
+    """Say in words how the transmission errors of the meshes lag."""
     if isinstance(phasing, str):
         return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]
     lags = ", ".join(f"{mesh} {lag:g}" for mesh, lag in phasing.items())
@@ -96,10 +97,12 @@ def _phasing(phasing: str | Mapping[str, float]) -> str:
 
 
 def _variation(factor: float) -> str:
+    """Say in words by which factor the stiffness varies more than computed; empty for 1."""
     return "" if factor == 1.0 else f", {factor:.3g} times its variation"
 
 
 def _kinematics(transmission: Mapping[str, Any]) -> str:
+    """Say in words which kinematics meshes have."""
     radius = transmission["face_gear"]["mesh_radius_mm"]
     return "meshes geometric" if radius is None else f"meshes as printed, mesh radius {radius:g} mm"
 
@@ -108,6 +111,7 @@ KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
     "printed": "printed, equation (13) of the source paper to the letter (docs/explanation/theory.md)",
 }
+"""Mesh kinematics in words."""
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""
 
@@ -164,7 +168,7 @@ def machine_chapter(
         Tables of the report by name; may hold ratings, bodies, meshes.
     pair : mapping or None
         Record of the tooth geometry, where it was computed.
-    drawn : sequence of Picture
+    pictures : sequence of Picture
         Drawings of the machine.
     base : Base or None
         The config file that the case's own extends.
@@ -191,7 +195,20 @@ def machine_chapter(
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
-    """Columns quantity, value, unit, as text; only what is known."""
+    """Return the key numbers of a machine as text, as far as they were computed.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+
+    Returns
+    -------
+    DataFrame
+        Columns quantity, value and unit.
+    """
     numbers_by_name = _less_friction(_signed_numbers(tables) | machine_numbers(tables)) | (
         {} if pair is None else _teeth(pair)
     )
@@ -205,7 +222,7 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
 
 
 def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """The numbers with the power out with and without the friction loss, where both are known."""
+    """Return the numbers with the power out without and with the friction loss, kW, where both are known."""
     if not {"loss_percent", "power_in_kw", "power_out_kw"} <= numbers.keys():
         return dict(numbers)
     without = numbers["power_out_kw"]
@@ -218,7 +235,7 @@ def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
-    """Safeties, factors of the load and loss, where they were computed."""
+    """Return safeties, load sharing and dynamic factors and loss by name, where they were computed."""
     numbers: dict[str, float] = {}
     if "rating" in tables:
         smallest = tables["rating"].groupby("failure")["safety"].min()
@@ -233,6 +250,7 @@ def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
 
 
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the key numbers of the teeth from the record of their geometry."""
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
     path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
@@ -249,6 +267,7 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
+    """Return the text of the chapter: what the machine is, in words."""
     pair, transmission = values["tooth_pair"], values["transmission"]
     teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
     source = SOURCES[values["mesh_stiffness"]["source"]]
@@ -271,7 +290,7 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _materials(values: Mapping[str, Any]) -> str:
-    """The material cards by which the pair is rated, if it is."""
+    """State the material cards by which the pair is rated; empty without section `strength`."""
     if (strength := values["strength"]) is None:
         return ""
     pinion, gear = (strength[body]["card"]["name"] for body in ("pinion", "face_gear"))
@@ -349,7 +368,9 @@ def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
-    """Dotted keys and values; a list of sections has numbered keys, any other list is one value."""
+    """Return dotted keys and values below a key; a list of sections has numbered keys, any other list is one
+    value.
+    """
     if isinstance(value, Mapping):
         return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]
     if isinstance(value, list | tuple):

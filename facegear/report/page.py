@@ -26,13 +26,25 @@ DECIMALS = 2
 UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
+"""White space that one blank can stand for."""
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
+"""Decimal number in a svg."""
 
 
 def data_uri(still: str) -> str:
-    """The text of a svg as a data URI that holds no single quote, for an attribute between such quotes.
+    """Return a svg as a data URI without single quotes, for an attribute between such quotes.
 
     A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
+
+    Parameters
+    ----------
+    still : str
+        Text of the svg.
+
+    Returns
+    -------
+    str
+        The URI.
     """
     drawing = shortened(still).replace("%", quote("%"))
     for letter in set(drawing) - UNESCAPED_CHARACTERS - {"%"}:
@@ -41,20 +53,34 @@ def data_uri(still: str) -> str:
 
 
 def shortened(svg: str) -> str:
-    """Return the drawing without its metadata, with rounded coordinates and without needless gaps."""
+    """Return a drawing without its metadata, with rounded coordinates and without needless white space.
+
+    Parameters
+    ----------
+    svg : str
+        Text of the svg.
+
+    Returns
+    -------
+    str
+        The shorter text.
+    """
     drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
     drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
     return GAPS.sub(" ", re.sub(r">\s+<", "><", drawing)).strip()
 
 
 def _round_numbers(attribute: re.Match[str]) -> str:
+    """Round the coordinates of an attribute to DECIMALS."""
     parts = NUMBER.split(attribute[2])
     parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
     return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
 
 
 FOLDER = Path(__file__).parent
+"""Folder of the page's parts."""
 TEMPLATE = FOLDER / "page.html.j2"
+"""Template of the page."""
 LIBRARY = FOLDER / "plotly-cartesian.min.js"
 """plotly.js as its makers publish it, the part with curves, bars and maps; its licence stands beside it."""
 
@@ -114,8 +140,8 @@ class View:
     caption: str
     kind: Literal["pair", "body"] = "pair"
 
-    def packed(self) -> str:
-        """Return the data as the page carries them.
+    def compressed_data(self) -> str:
+        """Return the data as compressed text, which the page's script unpacks.
 
         Returns
         -------
@@ -180,15 +206,17 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
 
 
 def _own_file(name: str) -> str:
+    """Return the text of a file beside this module."""
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
 def _json(content: Any) -> bytes:
+    """Return plain values as compact JSON."""
     return json.dumps(content, separators=(",", ":")).encode()
 
 
 def _pack(content: bytes) -> str:
-    """Compressed, as text; the same content gives the same text."""
+    """Compress bytes and encode them as base64 text; equal content gives equal text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 

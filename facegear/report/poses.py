@@ -13,30 +13,38 @@ MESHES = (
     "machine puts it and as assembled; to inner and outer end: from the unloaded path to the ends of the "
     "face; by pose: change at the mesh's own load"
 )
+"""Caption of the table of meshes."""
 POSE_COLUMNS = (
     *("mesh", "force_n", "unloaded_path_mm", "path_mm", "path_as_assembled_mm"),
     *("to_inner_end_mm", "to_outer_end_mm"),
     *("stiffness_by_pose_percent", "pressure_by_pose_percent", "face_gear_root_by_pose_percent"),
 )
+"""Columns of the table of meshes."""
 POSE = (
     "Every mesh in full. offset, axial shift, shaft angle: errors of assembly that the motions of both "
     "bodies amount to; outward: how far they move the unloaded contact; closing: what the flanks close "
     "beyond the deflection of the mesh"
 )
+"""Caption of the table of poses."""
 LEAVING_COLUMNS = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
     "of the face"
 )
+"""Caption of the table of contacts that leave the face."""
 EDGES = (
     "Distance of the contact pattern of every mesh, as it runs, to both ends of the face, to the tips of "
     "pinion and gear, and to the radii where undercut begins and tips are pointed"
 )
+"""Caption of the table of distances to edges."""
 STRESS = (
     "Pressure and root stress of every mesh at its own torque, from contact solved where the machine's own "
     "forces put its teeth, and as assembled"
 )
+"""Caption of the table of stress at the pose."""
 PATTERN = "pattern_to_"
+"""Beginning of the names of columns with distances of the contact pattern to edges."""
 CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
+"""Caption of the table that compares the surface with direct solutions."""
 CHANGE_COLUMNS = {
     "stiffness_by_pose_percent": "stiffness",
     "pressure_by_pose_percent": "pressure",
@@ -100,7 +108,7 @@ def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _path(loaded_meshes: pd.DataFrame) -> list[str]:
-    """The contact that moves most, and the one nearest to an end of the face."""
+    """Say which contact path moves most, and which one is nearest to an end of the face."""
     if loaded_meshes.empty:
         return ["No mesh carries load."]
     shift = loaded_meshes["path_mm"] - loaded_meshes["path_as_assembled_mm"]
@@ -128,7 +136,7 @@ def _path(loaded_meshes: pd.DataFrame) -> list[str]:
 
 
 def _pattern(loaded_meshes: pd.DataFrame) -> str:
-    """At which ends of the face the loaded pattern ends, and which tips carry none of it."""
+    """Say at which ends of the face the loaded pattern ends, and which tooth tips carry no load."""
     if f"{PATTERN}inner_end_mm" not in loaded_meshes or loaded_meshes.empty:
         return ""
     sentences = []
@@ -159,6 +167,7 @@ def _changes(loaded_meshes: pd.DataFrame) -> str:
 
 
 def _force(meshes: pd.DataFrame) -> str:
+    """Say in words which mesh force the pose changes most."""
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     row = (after - before).abs().idxmax()
     return (
@@ -168,7 +177,7 @@ def _force(meshes: pd.DataFrame) -> str:
 
 
 def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
-    """At which loads contacts leave the face, as far as loads were looked at."""
+    """Say at which loads contacts leave the face, as far as loads were computed."""
     leaving_contacts, largest_percent = (
         tables["poses_leaving"],
         100 * tables["poses_loads"]["load_fraction"].max(),

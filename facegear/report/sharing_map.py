@@ -16,6 +16,7 @@ POINTS = (
     "load of all meshes of the group; p50, p95, p99: percentiles over the drawn errors of the idlers. An "
     "input has one value"
 )
+"""Caption of the table of the machine's points."""
 ADVICE = (
     "Each change of the machine by itself, at its nominal torque, and what it does to {group}: K_gamma is "
     "{now:.3f} before. found: by the statics of the changed machine; gain: what K_gamma falls by; predicted "
@@ -25,16 +26,20 @@ ADVICE = (
 MORE_ADVICE = "Changes and {group}: K_gamma is {now:.3f} before{note}"
 """Caption of the tables of advice below it."""
 PERCENTILE_NOTE = ". Idlers are judged by the 95th percentile over their drawn errors"
+"""Note on the percentile of idlers, behind a caption."""
 CURVES = (
     "Curves of the idlers. all carry: fraction of the drawn machines in which every path carries, where the "
     "closed form may hold"
 )
+"""Caption of the table of the idlers' curves."""
 INPUTS = "Curves of the inputs, for each stiffness of their bearings; closed: the loop formula"
+"""Caption of the table of the inputs' curves."""
 VISIBLE = 1e-3
 """Fall of K_gamma below which a change is not named: three digits stand in the text."""
 BEST = 3
 """Changes that are named for the machine as a whole."""
 MAIN_COLUMNS = ("change", "from_to", "found", "gain", "predicted_gain")
+"""Columns of the advice that are not folded."""
 
 
 def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -179,20 +184,24 @@ def closed_form_line(curves: pd.DataFrame, reasons: pd.DataFrame) -> str:
 
 
 def _change(row: pd.Series) -> str:
+    """Say in words what a change is and what it gives."""
     return f"{row['change']} ({row['from_to']}): {_from_to(row)}"
 
 
 def _from_to(row: pd.Series) -> str:
+    """Say in words the factor before and after a change."""
     measure = "P95 of K_gamma" if row["kind"] == "idlers" else "K_gamma"
     return f"{measure} from {row['k_gamma']:.3f} to {row['found']:.3f}"
 
 
 def _prediction(row: pd.Series) -> str:
+    """Say in words the gain beside that of the closed form, if there is one."""
     if pd.isna(row["predicted_gain"]):
         return ""
     return f", a gain of {row['gain']:.3f} (closed form {row['predicted_gain']:.3f})"
 
 
 def _capital(words: object) -> str:
+    """Return words with a capital at the beginning."""
     text = str(words)
     return text[:1].upper() + text[1:]

@@ -11,12 +11,17 @@ from facegear.report.data_sheet import ROUNDING_OF_POWER
 from facegear.ties import first_largest_row
 
 GREEN, RED, GREY = "green", "red", "grey"
+"""Colours of verdicts: fulfilled, violated, unknown."""
 NOT_COMPUTED = "Not computed."
+"""Reason of a verdict that is not known."""
 BEYOND = "beyond torques solved"
+"""Remark on loads beyond the torques solved."""
 MARKS = {"tip edges": "edge contact", "fillets": "fillet contact"}
 """First words of a rating's caveat, and the mark that stands for it."""
 RATED_FAILURES = {"bending": "Bending", "pitting": "Pitting"}
+"""Rated failures in words."""
 OIL = {"scuffing": "Scuffing", "micropitting": "Micropitting"}
+"""Failures of lubrication in words."""
 SAFE = 1.0
 """Smallest safety against scuffing and micropitting that is green: the limits hold a test's own margin."""
 
@@ -215,6 +220,7 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
 
 
 def _why_no_k_gamma(values: Mapping[str, Any]) -> str:
+    """Say in words why there is no load sharing factor."""
     machine = values["transmission"]
     roles = [] if machine is None else [pinion["role"] for pinion in machine["pinions"]]
     if len(roles) == len(set(roles)):
@@ -362,4 +368,5 @@ def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, 
 
 
 def _sentence(text: str) -> str:
+    """Return text with a capital at the beginning."""
     return text[:1].upper() + text[1:]

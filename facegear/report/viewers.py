@@ -23,6 +23,7 @@ LINE = ("torque_n_m", "position", "tooth", "plane")
 PROFILE, WIDTH = 17, 7
 """Points of each drawn patch."""
 SHOWN_GEAR_TEETH = 13
+"""Number of gear teeth drawn around the mesh; more would only cost size of the page."""
 QUANTITIES = (
     {
         "key": "pressure",
@@ -70,12 +71,28 @@ def pair_view(
     stress: Arrays | None = None,
     friction: Arrays | None = None,
 ) -> View:
-    """The pair at every solved position and torque.
+    """Return the view of the pair at every solved position and torque, lengths in mm.
 
-    `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS, `stress` as ROOT_STRESS_ARRAYS, `friction` as
-    LOCAL_ARRAYS of stage lubrication. Lengths in mm. Colours show the pressure, the load, friction's loss or
-    the flash temperature of the line of contact at every loaded node's column of the flank, or the root
-    stress, the largest of each torque at the end of the scale.
+    Colours show pressure, load, friction loss or flash temperature of the line of contact at every loaded
+    node's column of the flank, or the root stress. The scale ends at the largest value of each torque.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    loads : mapping of (...) arrays
+        Arrays PRESSURE_ARRAYS of stage contact, SI units.
+    ltca : DataFrame
+        Table with LTCA_COLUMNS of stage contact.
+    stress : mapping of (...) arrays or None
+        Arrays ROOT_STRESS_ARRAYS, SI units, where root stress was computed.
+    friction : mapping of (...) arrays or None
+        Arrays LOCAL_ARRAYS of stage lubrication, SI units, where friction was computed.
+
+    Returns
+    -------
+    View
+        The view.
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])
@@ -108,6 +125,9 @@ def pair_view(
 
 
 def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, Any]:
+    """Return the drawn teeth of a body as plain values: numbers of teeth, surface patches, and gauges in the
+    fillets.
+    """
     teeth = teeth_of(design, name)
     tooth_count = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
     return {
@@ -125,7 +145,7 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
 
 
 def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
-    """Positions of the gauges of a tooth, and the number of the first tooth of a passage."""
+    """Return the positions of the root gauges of a tooth, and the number of the first tooth of a passage."""
     position = stress[f"{name}_position_m"]
     return {
         "shape": list(position.shape[1:3]),
@@ -135,7 +155,7 @@ def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
 
 
 def _tension(torque: float, stress: Arrays) -> dict[str, Array]:
-    """Tension (MPa) at the gauges of both bodies over the passage."""
+    """Return the tension (MPa) at the gauges of both bodies over the passage."""
     row = int(np.flatnonzero(stress["torque_n_m"] == torque)[0])
     return {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
 
@@ -148,6 +168,9 @@ def _torque(
     stress: Arrays | None,
     friction: Arrays | None,
 ) -> dict[str, Any]:
+    """Return the part of the view at one torque: loaded nodes by position, coded values, their largest, and
+    curves.
+    """
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
     order = np.argsort(row, kind="stable")
@@ -175,8 +198,19 @@ def _torque(
 
 
 def line_pressure(loads: Arrays, on: Mask) -> Array:
-    """Pressure (MPa) at each chosen node: that of the line of contact in its column, nan where an edge
-    carries the load, and in a fillet.
+    """Return the pressure at nodes: that of the line of contact in the node's column of the flank.
+
+    Parameters
+    ----------
+    loads : mapping of (...) arrays
+        Arrays PRESSURE_ARRAYS of stage contact, SI units.
+    on : mask of shape (loaded nodes,)
+        Nodes to return.
+
+    Returns
+    -------
+    (chosen nodes,) array
+        Pressure, MPa; nan in a fillet and where an edge carries the load.
     """
     inside = loads["line_where"] == EDGES.index("inside")
     pressure = np.where(inside, 1e-6 * loads["line_pressure_pa"], np.nan)
@@ -184,9 +218,24 @@ def line_pressure(loads: Arrays, on: Mask) -> Array:
 
 
 def of_lines(loads: Arrays, on: Mask, lines: Arrays, values: Array) -> Array:
-    """Value at each chosen node: the largest of the lines of contact in its column, nan in a fillet.
+    """Return at each chosen node the largest value of the lines of contact in its column of the flank.
 
-    lines: arrays (m,) under the names LINE, which say where each of the values (m,) holds.
+    Parameters
+    ----------
+    loads : mapping of (...) arrays
+        Arrays PRESSURE_ARRAYS of stage contact, SI units.
+    on : mask of shape (loaded nodes,)
+        Nodes to return.
+    lines : mapping of (m,) arrays
+        Torque, N m, position, tooth and plane of each value, under the names LINE; indices but for the
+        torque.
+    values : (m,) array
+        Values along the lines, any unit.
+
+    Returns
+    -------
+    (chosen nodes,) array
+        Values in the same unit; nan in a fillet.
     """
     index = pd.MultiIndex.from_arrays([lines[key] for key in LINE], names=LINE)
     line_values = pd.Series(values, index).groupby(level=list(LINE)).max()
@@ -199,8 +248,20 @@ def of_lines(loads: Arrays, on: Mask, lines: Arrays, values: Array) -> Array:
 
 
 def line_load(loads: Arrays, on: Mask) -> Array:
-    """Load (N/mm) at each chosen node: all force on its column of the flank, at its position, over the
-    column's width.
+    """Return the load per width at nodes: all force on the node's column of the flank over the column's
+    width.
+
+    Parameters
+    ----------
+    loads : mapping of (...) arrays
+        Arrays PRESSURE_ARRAYS of stage contact, SI units.
+    on : mask of shape (loaded nodes,)
+        Nodes to return.
+
+    Returns
+    -------
+    (chosen nodes,) array
+        Load at the node's position and torque, N/mm.
     """
     rows, columns = (int(n) for n in loads["shape"])
     y = 1e3 * loads["point_m"].reshape(rows, columns, 3)[0, :, 1]
@@ -213,7 +274,7 @@ def line_load(loads: Arrays, on: Mask) -> Array:
 
 
 def _parts(values: AnyArray, largest: float) -> str:
-    """Values in 255ths of the largest, rounded up; 0 where there is none."""
+    """Encode values as 255ths of the largest, rounded up; 0 where a value is nan."""
     return encode_array(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
 
 
@@ -228,9 +289,21 @@ FACTOR = 2.5
 
 
 def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | None:
-    """Outline of each gear turned about its axis, with the motions of its first modes; none without modes.
+    """Return the view of each gear's outline, turned about its axis, with the motions of its first modes.
 
-    `modes` and `shapes` are those of stage gear_bodies. Gears that are alike are shown once. Lengths in mm.
+    Equal gears are shown once. Lengths in mm.
+
+    Parameters
+    ----------
+    modes : DataFrame
+        Table `modes` of stage gear_bodies.
+    shapes : mapping of (...) arrays
+        Arrays of stage gear_bodies; nodes in m.
+
+    Returns
+    -------
+    View or None
+        The view; None without modes.
     """
     gears: dict[str, dict[str, Any]] = {}
     for name in dict.fromkeys(modes["gear"]):
@@ -261,6 +334,7 @@ def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | Non
 
 
 def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dict[str, Any]:
+    """Return the outline of a gear, mm, and its modes with coded displacements of the outline's nodes."""
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
     outline = _thinned(nodes, boundary(quads))
     frequencies = modes.set_index(["nodal_diameters", "mode"])["frequency_hz"]
@@ -284,7 +358,18 @@ def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dic
 
 
 def boundary(quads: AnyArray) -> Integers:
-    """Nodes along the outline of a mesh of quadrilaterals (cells, 4), in order."""
+    """Return the nodes along the outline of a mesh, in order.
+
+    Parameters
+    ----------
+    quads : (cells, 4) array of int
+        Node indices of each quadrilateral.
+
+    Returns
+    -------
+    (nodes,) array of int
+        Indices of the nodes around the outline, each once.
+    """
     edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
     sides, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     beside: dict[int, list[int]] = {}
@@ -300,7 +385,7 @@ def boundary(quads: AnyArray) -> Integers:
 
 
 def _thinned(nodes: Array, along: Integers) -> Integers:
-    """Return the nodes along an outline at its corners, and enough between them."""
+    """Return the nodes of an outline at its corners and at about PIECES even distances between them."""
     positions = nodes[along]
     after = np.roll(positions, -1, axis=0) - positions
     steps = np.linalg.norm(after, axis=1)

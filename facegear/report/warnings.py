@@ -33,7 +33,17 @@ SECTIONS = {
 
 
 class ResultWarning(NamedTuple):
-    """One warning: its subject, how serious it is (WRONG, LIMITED, CHOSEN), one line of words."""
+    """A note on the numbers of a report.
+
+    Attributes
+    ----------
+    subject : str
+        Subject under which the report lists the note, such as `Contact`.
+    weight : int
+        Severity: WRONG, WITHIN_LIMITS or GIVEN_INPUT.
+    words : str
+        The note, one line.
+    """
 
     subject: str
     weight: int
@@ -77,6 +87,7 @@ def grouped_warnings(
 
 
 def _of_note(note: str) -> ResultWarning:
+    """Return the warning of a note `key: words` on the config."""
     key, _, words = note.partition(": ")
     section = key.split(".")[0].split(" ")[0]
     if key == section:

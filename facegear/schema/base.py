@@ -51,7 +51,7 @@ def config_error(error: InvalidInput) -> ConfigError:
     ConfigError
         The same refusal with keys of the config.
     """
-    requirement = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.allowed)
+    requirement = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.requirement)
     return ConfigError(KEYS.get(error.quantity, error.quantity), error.value, requirement)
 
 
@@ -135,9 +135,9 @@ def require_all(*checks: Callable[[], None]) -> None:
             check()
         except InvalidInput as error:
             key_error = config_error(error)
-            refusals.append((key_error.key, key_error.value, key_error.allowed))
+            refusals.append((key_error.key, key_error.value, key_error.requirement))
         except ConfigError as error:
-            refusals.append((error.key, error.value, error.allowed))
+            refusals.append((error.key, error.value, error.requirement))
         except PydanticCustomError as error:
             refusals += (error.context or {})["refused"]
     if refusals:
@@ -145,6 +145,7 @@ def require_all(*checks: Callable[[], None]) -> None:
 
 
 def _refuse_all(refusals: Sequence[tuple[str, object, str]]) -> NoReturn:
+    """Raise pydantic's error of several refused values."""
     raise PydanticCustomError("refused", "refused", {"refused": list(refusals)})
 
 
@@ -383,6 +384,7 @@ _TYPE_NAMES = {"float", "int", "str", "bool"}
 
 
 def _dotted(location: list[int | str]) -> str:
+    """Return a location of pydantic as a dotted key with indices in brackets."""
     text = ""
     for part in location:
         text += f"[{part}]" if isinstance(part, int) else f"{'.' if text else ''}{part}"
@@ -390,11 +392,13 @@ def _dotted(location: list[int | str]) -> str:
 
 
 def _value_text(value: Any) -> str:
+    """Return a value as JSON of at most 60 letters."""
     text = json.dumps(value, default=str)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _nearest(model: type[Section], location: list[int | str]) -> str | None:
+    """Return the known key that is nearest to an unknown one, if any is near."""
     return _closest(str(location[-1]), _keys_at(model, location[:-1]))
 
 
@@ -406,6 +410,7 @@ def _closest(key: str, keys: Iterable[str]) -> str | None:
 
 
 def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
+    """Return the keys that sections at a location may hold."""
     models = {model}
     for part in location:
         if isinstance(part, int):
@@ -416,6 +421,7 @@ def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
 
 
 def _models_in(annotation: Any) -> set[type[BaseModel]]:
+    """Return all sections in an annotation."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return {annotation}
     return {nested for part in get_args(annotation) for nested in _models_in(part)}

@@ -21,6 +21,7 @@ class BearingStiffness(Section):
 
     @model_validator(mode="after")
     def _holds(self) -> "BearingStiffness":
+        """Refuse a coupling with which the stiffness matrix would not be positive definite."""
         if self.xy != 0.0 and self.xy**2 >= self.x * self.y:
             refuse("xy", self.xy, f"less than sqrt(x y) = {(self.x * self.y) ** 0.5:g} in size")
         return self
@@ -52,6 +53,7 @@ def _one_sided(one_side: float | None, diametral: float | None) -> float | None:
 
 
 def _refuse_both(one_side: float | None, diametral: float | None) -> None:
+    """Refuse a clearance that is given both one-sided and diametral."""
     if one_side and diametral is not None:
         refuse("clearance_diametral_um", diametral, f"left out where clearance_um = {one_side:g} is given")
 
@@ -86,6 +88,7 @@ class PinionBody(Section):
 
     @model_validator(mode="after")
     def _single_clearance(self) -> "PinionBody":
+        """Refuse a clearance that is given twice."""
         _refuse_both(self.clearance_um, self.clearance_diametral_um)
         return self
 
@@ -190,6 +193,7 @@ class SinglePinion(Section):
 
     @model_validator(mode="after")
     def _single_clearance(self) -> "SinglePinion":
+        """Refuse a clearance that is given twice."""
         _refuse_both(self.clearance_um, self.clearance_diametral_um)
         return self
 

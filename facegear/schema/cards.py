@@ -45,6 +45,7 @@ def read_card(model: type[Section], value: Any, folder: Path) -> Any:
 
 
 def _file(name: str, folder: Path) -> Path:
+    """Return the path of a card: a file of the user, or one of the package's by its name."""
     path = Path(name)
     if path.suffix:
         return path
@@ -72,6 +73,7 @@ class Limits(Section):
 
     @model_validator(mode="after")
     def _check_life(self) -> "Limits":
+        """Refuse life factors that do not fall while cycles rise."""
         cycles, factors = zip(*self.life, strict=True)
         cycles_rise = all(low < high for low, high in pairwise(cycles))
         factors_fall = all(high > low for high, low in pairwise(factors))
@@ -171,6 +173,7 @@ class OilCard(Section):
 
     @model_validator(mode="after")
     def _thinning(self) -> "OilCard":
+        """Refuse viscosities that do not fall with temperature."""
         if self.temperatures_c[0] >= self.temperatures_c[1]:
             refuse("temperatures_c", self.temperatures_c, "two temperatures, the lower first")
         if self.viscosities_mm2_s[0] <= self.viscosities_mm2_s[1]:

@@ -7,8 +7,11 @@ from typing import Any
 from facegear.errors import ConfigError
 
 SPEED = "dynamics.speed_rpm"
+"""Key of the operating speed."""
 MACHINE = "transmission."
+"""Beginning of the keys of the machine."""
 PAIR = "tooth_pair."
+"""Beginning of the keys of the tooth pair."""
 LUBRICATION = "lubrication."
 """Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
@@ -244,6 +247,7 @@ def set_numbers(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict
 
 
 def _to_each_side(transmission: Mapping[str, Any]) -> None:
+    """Turn diametral clearances into one-sided ones, in place."""
     for part in (transmission["pinion"], *transmission["single_pinions"].values()):
         if part.get(DIAMETRAL) is not None:
             part |= {ONE_SIDE: 0.5 * part[DIAMETRAL], DIAMETRAL: None}
@@ -271,10 +275,12 @@ def _holder(values: Any, parts: list[str]) -> tuple[Any, Any]:
 
 
 def _index_of(values: Any, part: str) -> str | int:
+    """Return a part of a key as an index where the values are a list."""
     return int(part) if isinstance(values, list | tuple) and part.isdecimal() else part
 
 
 def _has(values: Any, index: str | int) -> bool:
+    """Whether values hold a key or an index."""
     if isinstance(values, dict):
         return index in values
     return isinstance(values, list) and isinstance(index, int) and index < len(values)

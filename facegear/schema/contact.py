@@ -92,6 +92,7 @@ class Contact(Section):
 
     @model_validator(mode="after")
     def _check_torques(self) -> "Contact":
+        """Refuse torques that do not rise, and root stress with elements that cannot give it."""
         if list(self.torques_n_m) != sorted(set(self.torques_n_m)):
             refuse("torques_n_m", list(self.torques_n_m), "rising, each once")
         if self.root_stress and self.element != "hex27":

@@ -162,6 +162,7 @@ def _check_header(
 def _row(
     line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str], texts: Sequence[str]
 ) -> tuple[CsvRow, dict[str, str]]:
+    """Return one line's numbers and texts by column."""
     if len(cells) != len(header):
         raise CsvFault(
             f"line {line}: {count_noun(len(cells), 'value')} under {count_noun(len(header), 'column name')}"
@@ -172,6 +173,7 @@ def _row(
 
 
 def _number(line: int, name: str, text: str) -> float:
+    """Return a cell as a finite number."""
     try:
         value = float(text)
     except ValueError:
@@ -182,6 +184,7 @@ def _number(line: int, name: str, text: str) -> float:
 
 
 def _text(path: Path) -> str:
+    """Return the text of a file; refuse directories, long files and other encodings."""
     try:
         if path.is_dir():
             raise CsvFault("it is a directory, not a csv file")
@@ -273,6 +276,7 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
 
 
 def _header(remarks: Iterable[str]) -> str:
+    """Return what the remarks of a file say of the pitch deviations: included or left out."""
     for remark in remarks:
         name, _, remark_value = remark.partition(":")
         if name.strip() == HEADER:
@@ -283,6 +287,7 @@ def _header(remarks: Iterable[str]) -> str:
 
 
 def _check_texts(line: int, texts: Mapping[str, str]) -> None:
+    """Refuse an unknown body or flank."""
     for column, known_texts in (("body", BODIES), ("flank", SIDES)):
         if texts[column] not in known_texts:
             raise CsvFault(
@@ -291,6 +296,7 @@ def _check_texts(line: int, texts: Mapping[str, str]) -> None:
 
 
 def _tooth(line: int, text: str) -> int | None:
+    """Return the number of a tooth, None for `all`."""
     if text == "all":
         return None
     if not (text.isascii() and text.isdigit() and int(text) > 0):
@@ -299,6 +305,7 @@ def _tooth(line: int, text: str) -> int | None:
 
 
 def _check_unit(grids: Mapping[Any, Mapping[Any, _Point]]) -> None:
+    """Refuse deviations so small that they must be in mm."""
     largest = max(abs(point.deviation) for grid in grids.values() for point in grid.values())
     if 0.0 < largest < SMALLEST:
         raise CsvFault(
@@ -307,6 +314,7 @@ def _check_unit(grids: Mapping[Any, Mapping[Any, _Point]]) -> None:
 
 
 def _grid(tooth: int | None, flank: str, points: Mapping[tuple[float, float], _Point]) -> dict[str, Any]:
+    """Return the grid section of one flank; refuse a grid with missing points."""
     faces, profiles = (sorted({at[axis] for at in points}) for axis in (0, 1))
     for face in faces:
         for profile in profiles:

@@ -12,6 +12,7 @@ from facegear.schema.csv_file import CsvFault, read_flanks
 
 Side = Literal["right", "left"]
 SIDES: tuple[Side, ...] = ("right", "left")
+"""Flanks of a tooth."""
 
 
 LARGEST = 500.0
@@ -44,6 +45,7 @@ class GridSection(Section):
 
     @model_validator(mode="after")
     def _regular(self) -> "GridSection":
+        """Refuse positions that do not rise and deviations of another shape."""
         for name in ("face_mm", "profile_mm"):
             line = getattr(self, name)
             for before, after in pairwise(line):
@@ -72,6 +74,7 @@ class FlanksSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "FlanksSection":
+        """Refuse two grids of one tooth's flank."""
         for side in SIDES:
             teeth = [grid.tooth for grid in self.grids if grid.flank == side]
             for number, tooth in enumerate(teeth):
@@ -110,6 +113,7 @@ def read_files(values: Any) -> Any:
 
 
 def _read(values: Mapping[str, Any], body: str) -> dict[str, Any]:
+    """Read the grids of a flank file where a file is given."""
     read = dict(values)
     if isinstance(name := values.get("file"), str):
         if values.get("grids"):
@@ -126,6 +130,7 @@ def _read(values: Mapping[str, Any], body: str) -> dict[str, Any]:
 
 
 def _tupled(value: Any) -> Any:
+    """Turn lists into tuples, inside mappings as well."""
     if isinstance(value, Mapping):
         return {key: _tupled(item) for key, item in value.items()}
     return tuple(_tupled(item) for item in value) if isinstance(value, list | tuple) else value

@@ -135,6 +135,7 @@ class BodySection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "BodySection":
+        """Check parts, edges and damping; all mistakes are reported together."""
         require_all(self._check_parts, self._check_edges, self._check_damping)
         return self
 
@@ -146,6 +147,7 @@ class BodySection(Section):
         return DAMPING_RATIO if self.damping_ratio is None else self.damping_ratio, 0.0
 
     def _check_parts(self) -> None:
+        """Refuse a section given both by parts and by corners, or by neither."""
         if self.corners_mm:
             for name in ("hub", "web", "rim"):
                 if getattr(self, name) is not None:
@@ -158,6 +160,7 @@ class BodySection(Section):
             refuse(absent_part, None, "given: hub and web go together; a rim alone is a disc or ring")
 
     def _check_damping(self) -> None:
+        """Refuse damping given twice or too large."""
         beta = self.stiffness_damping_s
         if beta is None:
             return
@@ -171,6 +174,7 @@ class BodySection(Section):
             refuse("stiffness_damping_s", beta, requirement)
 
     def _check_edges(self) -> None:
+        """Refuse held edges that the section does not have."""
         if self.held_edges and not self.corners_mm:
             refuse("held_edges", list(self.held_edges), "left out where hub, web and rim are given")
         wrong = [edge for edge in self.held_edges if not 1 <= edge <= len(self.corners_mm)]
@@ -179,6 +183,7 @@ class BodySection(Section):
 
 
 def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
+    """Read the corners of a section from a csv file, mm."""
     try:
         rows = read_numbers(name, COLUMNS)
     except CsvFault as fault:
@@ -187,6 +192,7 @@ def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
 
 
 def _step_corners(name: str) -> tuple[tuple[float, float], ...]:
+    """Read the corners of a section from a STEP file, mm."""
     from facegear.io.step_section import StepFault, read_section  # loads gmsh
 
     requirement = "a STEP file of one solid of revolution, or of its half section"

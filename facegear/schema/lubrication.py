@@ -56,6 +56,7 @@ class FrictionSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "FrictionSection":
+        """Refuse keys that the model lacks or does not use."""
         for key, models in (
             ("coefficient", ("constant",)),
             ("constants", ("doleschel",)),
@@ -88,6 +89,7 @@ class BulkSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "BulkSection":
+        """Refuse keys that the source of the bulk temperature lacks or does not use."""
         required_keys = {"given": ("temperature_c",), "cooling": ("pinion_w_per_k", "face_gear_w_per_k")}
         for source in required_keys:
             for key in required_keys[source]:
@@ -153,17 +155,20 @@ class LubricationSection(Section):
     @field_validator("oil", mode="before")
     @classmethod
     def _read(cls, oil: Any) -> Any:
+        """Read the card of an oil by its name."""
         return read_card(OilCard, oil, OIL_CARDS)
 
     @field_validator("map_speeds_rpm")
     @classmethod
     def _check_map_speeds(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
+        """Refuse speeds of the map that do not rise."""
         if list(speeds) != sorted(set(speeds)):
             refuse("", list(speeds), "rising speeds")
         return speeds
 
     @model_validator(mode="after")
     def _below_the_flash_point(self) -> "LubricationSection":
+        """Refuse temperatures at or above the oil's flash point."""
         requirement = f"below the oil's flash point, {self.oil.flash_point_c:g}"
         if self.supply_temperature_c >= self.oil.flash_point_c:
             refuse("supply_temperature_c", self.supply_temperature_c, requirement)

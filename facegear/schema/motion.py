@@ -81,6 +81,7 @@ class Sweep(Section):
 
     @model_validator(mode="after")
     def _check_speeds(self) -> "Sweep":
+        """Refuse an empty range of speeds and repeated directions."""
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
         if len(set(self.directions)) < len(self.directions):
@@ -149,6 +150,7 @@ class Branches(Section):
 
     @model_validator(mode="after")
     def _check_speeds(self) -> "Branches":
+        """Refuse an empty range of speeds and explored speeds outside it."""
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
         for speed in self.explore.speeds_rpm:

@@ -133,11 +133,13 @@ def unit_suggestion(key: str, value: float, low: float | None, high: float | Non
 
 
 def _is_far(size: ExpectedSize) -> bool:
+    """Whether a value lies beyond FAR times its usual range; rigid springs are free."""
     is_rigid = _suffix(size.key, UNITS) == "_n_per_m" and size.value >= RIGID
     return not is_rigid and not size.low / FAR <= abs(size.value) <= size.high * FAR
 
 
 def _note(size: ExpectedSize) -> str:
+    """Say in words that a value is unusual, and which unit may be meant."""
     unit = UNITS[_suffix(size.key, UNITS)]
     low, high = (f"{float(f'{bound:.2g}'):g}" for bound in (size.low, size.high))
     usual = low if low == high else f"{low} to {high}"
@@ -186,6 +188,7 @@ class _Teeth:
 
     @property
     def mesh_stiffness(self) -> float:
+        """Usual mesh stiffness of such teeth, N/m."""
         return MESH_STIFFNESS * self.face
 
     @property
@@ -215,6 +218,7 @@ class _Teeth:
 
 
 def _pair_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
+    """Yield values of section tooth_pair with their usual sizes."""
     module, radius = 1e3 * teeth.module, 1e3 * teeth.gear_radius
     yield from _sizes(
         values,
@@ -254,6 +258,7 @@ def _contact_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expecte
 
 
 def _machine_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
+    """Yield values of section transmission with their usual sizes."""
     machine = values.get("transmission")
     if not isinstance(machine, Mapping):
         return
@@ -287,6 +292,7 @@ def _machine_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expecte
 
 
 def _shaft_sizes(machine: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
+    """Yield stiffness of shaft bearings with its usual sizes."""
     for name in _names(machine, "shafts"):
         shaft = machine["shafts"][name]
         for number, bearing in enumerate(_items(shaft, "bearings") if isinstance(shaft, Mapping) else ()):
@@ -298,11 +304,13 @@ def _shaft_sizes(machine: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expected
 
 
 def _spring(teeth: _Teeth) -> tuple[float, float]:
+    """Return the usual range of a bearing's stiffness, N/m."""
     soft, stiff = BEARINGS
     return soft * teeth.mesh_stiffness, stiff * teeth.mesh_stiffness
 
 
 def _sizes(values: Mapping[str, Any], usual: Mapping[str, float]) -> Iterator[ExpectedSize]:
+    """Yield the numbers that are given, with their usual size."""
     for key, size in usual.items():
         value = _number(values, key)
         if value is not None:
@@ -321,6 +329,7 @@ def _size(
 
 
 def _at(values: Mapping[str, Any], key: str) -> Any:
+    """Return the value at a dotted key, None where it is absent."""
     inside: Any = values
     for part in key.split("."):
         inside = inside.get(part) if isinstance(inside, Mapping) else None
@@ -328,19 +337,23 @@ def _at(values: Mapping[str, Any], key: str) -> Any:
 
 
 def _number(values: Mapping[str, Any], key: str) -> float | None:
+    """Return the number at a dotted key, None where there is none."""
     value = _at(values, key)
     return float(value) if _is_number(value) else None
 
 
 def _is_number(value: Any) -> bool:
+    """Whether a value is a plain number that is not absurdly large."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def _items(values: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    """Return the mappings of the list at a dotted key."""
     items = _at(values, key)
     return [item for item in items if isinstance(item, Mapping)] if isinstance(items, list | tuple) else []
 
 
 def _names(machine: Mapping[str, Any], key: str) -> list[str]:
+    """Return the names in a mapping below a section."""
     section = machine.get(key)
     return list(section) if isinstance(section, Mapping) else []

@@ -36,6 +36,7 @@ class SegmentSection(Section):
 
     @model_validator(mode="after")
     def _hollow(self) -> "SegmentSection":
+        """Refuse a bore that is not below the outer diameter."""
         if self.bore_mm >= self.diameter_mm:
             refuse("bore_mm", self.bore_mm, f"below diameter_mm = {self.diameter_mm:g}")
         return self
@@ -63,10 +64,12 @@ class ShaftBearing(Section):
 
     @model_validator(mode="after")
     def _given_once(self) -> "ShaftBearing":
+        """Check that stiffness is given once and the matrix is valid."""
         require_all(self._not_twice, self._square)
         return self
 
     def _not_twice(self) -> None:
+        """Refuse a bearing with a matrix and single stiffnesses, or with neither."""
         if self.matrix is None:
             if self.radial_n_per_m is None:
                 refuse("radial_n_per_m", None, "given, or else matrix")
@@ -76,6 +79,7 @@ class ShaftBearing(Section):
                 refuse(key, value, "left out beside matrix, which holds it")
 
     def _square(self) -> None:
+        """Refuse a stiffness matrix that is not 5 by 5, symmetric and positive."""
         if self.matrix is None:
             return
         if [len(row) for row in self.matrix] != [MOTIONS] * MOTIONS:
@@ -133,6 +137,7 @@ class ShaftSection(Section):
 
     @model_validator(mode="after")
     def _stands(self) -> "ShaftSection":
+        """Refuse a shaft without segments or bearings, or one that its bearings do not hold."""
         for key in ("segments", "bearings"):
             if not getattr(self, key):
                 refuse(key, [], "one or more")
@@ -140,6 +145,7 @@ class ShaftSection(Section):
         return self
 
     def _stations(self) -> None:
+        """Refuse a pinion or a bearing beyond the end of the shaft."""
         length = self.length_mm
         requirement = f"on the shaft, from 0 to {length:g} mm"
         if self.pinion_mm > length:
@@ -149,6 +155,7 @@ class ShaftSection(Section):
                 refuse(f"bearings[{number}].at_mm", bearing.at_mm, requirement)
 
     def _check_support(self) -> None:
+        """Refuse bearings that leave the shaft free to move."""
         stations = [bearing.at_mm for bearing in self.bearings]
         if max(self.pinion_mm, *stations) > self.length_mm:
             return
@@ -179,6 +186,7 @@ class TurningMassSection(Section):
 
     @model_validator(mode="after")
     def _one_spring(self) -> "TurningMassSection":
+        """Refuse a torsional spring given twice or not at all."""
         if (self.stiffness_n_m_per_rad is None) != bool(self.segments):
             requirement = "given, or else segments, but not both"
             refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, requirement)

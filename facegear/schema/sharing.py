@@ -17,6 +17,7 @@ class SpeedRangeSection(Section):
 
     @model_validator(mode="after")
     def _check_speeds(self) -> "SpeedRangeSection":
+        """Refuse an empty range of speeds."""
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"above from_rpm = {self.from_rpm:g}")
         return self
@@ -77,6 +78,7 @@ class SharingMap(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "SharingMap":
+        """Refuse a map without any deviation, or with factors that do not rise."""
         if self.mesh_deviation_um == 0.0 and self.position_deviation_um == 0.0:
             refuse("mesh_deviation_um", 0.0, "above 0, or position_deviation_um above 0")
         factors = self.input_bearing_factors

@@ -130,6 +130,7 @@ class MeshStiffness(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "MeshStiffness":
+        """Refuse keys that the source of the stiffness lacks or does not use."""
         if self.source != "harmonics" and self.table:
             refuse("source", self.source, "harmonics, as a table is given")
         if self.source == "fem_scaled" and self.mean_n_per_m is None:
@@ -182,7 +183,7 @@ def given_series(section: MeshStiffness) -> Harmonics:
 
 
 def _check_law(section: MeshStiffness) -> None:
-    """Only contact knows the load, and its law has no variation to be changed by itself."""
+    """Refuse a load-dependent law without contact, and a factor on its variation."""
     if section.source == "harmonics":
         refuse("mesh_law", "load_dependent", "constant_load, where source is harmonics")
     if section.variation != 1.0:
@@ -190,7 +191,9 @@ def _check_law(section: MeshStiffness) -> None:
 
 
 def _check_mean(mean: float | None, first: HarmonicSection) -> None:
-    """The mean comes from the key or from order 0 of the harmonics; where both stand, they agree."""
+    """Refuse a mean that is given by key and by order 0 of the harmonics with different values, or by
+    neither.
+    """
     if first.order > 0:
         if mean is None:
             refuse("mean_n_per_m", None, "given, as the harmonics have no order 0, which is the mean")
@@ -206,7 +209,9 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
 
 
 def _read_csv(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
-    """Rows of `table` from a csv of orders, or from one over the pinion's angle with the pitch it covers."""
+    """Read rows of `table` from a csv file of orders, or from one over the pinion's angle, with the pitch it
+    covers.
+    """
     if CURVE[0] in column_names(name):
         return _of_curve(read_numbers(name, CURVE))
     return _harmonics(read_numbers(name, COLUMNS, UNREAD)), None
@@ -246,6 +251,7 @@ def _harmonics(rows: Sequence[CsvRow]) -> tuple[dict[str, Any], ...]:
 
 
 def _harmonic(row: CsvRow) -> dict[str, Any]:
+    """Return the harmonic of a line of a csv file; refuse an invalid order."""
     order = row.values["order"]
     if order != round(order) or not 0 <= order <= MAX_ORDER:
         raise CsvFault(f"line {row.line}: order = {order:.10g} is not a whole number from 0 to {MAX_ORDER}")

@@ -46,6 +46,7 @@ class BodyStrength(Section):
     @field_validator("card", mode="before")
     @classmethod
     def _read(cls, card: Any) -> Any:
+        """Read the card of a material by its name."""
         return read_card(Card, card, CARDS)
 
 
@@ -76,6 +77,7 @@ class Strength(Section):
     @model_validator(mode="before")
     @classmethod
     def _bins(cls, values: Any) -> Any:
+        """Read the bins of the duty cycle from a csv file where one is given."""
         if not isinstance(values, Mapping):
             return values
         if isinstance(values.get("duty"), list):
@@ -92,6 +94,7 @@ class Strength(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "Strength":
+        """Check factors, duty cycle and material cards; all mistakes are reported together."""
         cards = (partial(self._check_card, name) for name in BODIES)
         require_all(self._check_factors, self._check_counted, self._check_duty, *cards)
         return self
@@ -110,11 +113,12 @@ class Strength(Section):
                     refuse(f"{name}.{key}", value, "left out where load_factors is machine")
 
     def _check_duty(self) -> None:
+        """Refuse a duty cycle without hours."""
         if not any(load.hours > 0 for load in self.duty):
             refuse("duty", [], "at least one bin with hours, here or in duty_csv")
 
     def _check_card(self, name: str) -> None:
-        """The card of a body holds what the rating needs."""
+        """Refuse a material card of a body that lacks limits which the rating needs."""
         card = getattr(self, name).card
         for part in ("pitting", "bending"):
             if getattr(card, part) is None:
@@ -134,5 +138,7 @@ class Strength(Section):
 
     @property
     def factor(self) -> float:
-        """K_A K_v K_gamma, those of the machine left out."""
+        """Product K_A K_v K_gamma of the load factors that the config gives; factors of the machine are left
+        out.
+        """
         return self.application_factor * self.dynamic_factor * self.mesh_load_factor

@@ -36,6 +36,7 @@ class VariableSection(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> "VariableSection":
+        """Refuse a variable with a reserved name or limits that do not rise."""
         if self.name in (*QUANTITIES, JUMP_MARGIN):
             refuse("name", self.name, "another one: the winners have a column of that name")
         if self.limits[1] <= self.limits[0]:
@@ -60,7 +61,7 @@ class ObjectiveSection(Section):
 
     @property
     def large(self) -> bool:
-        """Whether it is to be large."""
+        """Whether the objective is to be large, not small."""
         return bool(self.smallest_of)
 
     @property
@@ -70,6 +71,7 @@ class ObjectiveSection(Section):
 
     @model_validator(mode="after")
     def _one_way(self) -> "ObjectiveSection":
+        """Refuse an objective with both or neither of its directions."""
         if bool(self.largest_of) == bool(self.smallest_of):
             refuse("largest_of", list(self.largest_of), "either this or smallest_of")
         for text in self.largest_of:
@@ -86,13 +88,14 @@ class ConstraintSection(ObjectiveSection):
 
     @property
     def limit(self) -> float:
-        """The one that is given."""
+        """Limit of the constraint, in the unit of its quantity: `at_least` or `at_most`."""
         bound = self.at_least if self.large else self.at_most
         assert bound is not None
         return bound
 
     @model_validator(mode="after")
     def _check_limit(self) -> "ConstraintSection":
+        """Refuse a constraint without a limit on the side that it needs."""
         key, opposite_key = ("at_least", "at_most") if self.large else ("at_most", "at_least")
         for name, is_required in ((key, True), (opposite_key, False)):
             if (getattr(self, name) is not None) != is_required:
@@ -120,6 +123,7 @@ class Jumps(Section):
 
     @model_validator(mode="after")
     def _inside(self) -> "Jumps":
+        """Refuse a step beyond the range or too small for it."""
         if self.step_rpm > self.range_rpm:
             refuse("step_rpm", self.step_rpm, f"at most range_rpm = {self.range_rpm:g}")
         if self.range_rpm > 1000 * self.step_rpm:
@@ -161,10 +165,12 @@ class Search(Section):
 
     @model_validator(mode="after")
     def _different(self) -> "Search":
+        """Check names, keys and seeds; all mistakes are reported together."""
         require_all(self._check_names, self._check_keys, self._check_seeds)
         return self
 
     def _check_names(self) -> None:
+        """Refuse reserved and repeated names."""
         goals = [entry.name for entry in (*self.objectives, *self.constraints)]
         names = [*(entry.name for entry in self.variables), *goals]
         for number, name in enumerate(names):
@@ -174,11 +180,13 @@ class Search(Section):
                 refuse("name", name, "one of its own for each variable, objective and constraint")
 
     def _check_keys(self) -> None:
+        """Refuse a config key that two variables set."""
         keys = [key for variable in self.variables for key in variable.sets]
         if len(set(keys)) < len(keys):
             refuse("variables.sets", keys, "each key once")
 
     def _check_seeds(self) -> None:
+        """Refuse repeated seeds."""
         if len(set(self.seeds)) < len(self.seeds):
             refuse("seeds", list(self.seeds), "different numbers")
 
@@ -196,6 +204,7 @@ class StudyPoint(Section):
 
     @model_validator(mode="after")
     def _each_key_once(self) -> "StudyPoint":
+        """Refuse keys one of which holds another."""
         for first, second in combinations(self.set, 2):
             if _same_place(first, second):
                 refuse("set", [first, second], "keys none of which holds another")
@@ -212,6 +221,7 @@ class Axis(Section):
 
     @model_validator(mode="after")
     def _one_form(self) -> "Axis":
+        """Refuse an axis given both by points and by key with values, or by neither."""
         if bool(self.points) == bool(self.key):
             refuse("points", len(self.points), "given where there is no key, and left out beside one")
         if self.key and not self.values:
@@ -289,6 +299,7 @@ def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _all_differ(column: tuple[Any, ...]) -> bool:
+    """Whether all values of a column are numbers, each of which occurs once."""
     plain = all(isinstance(value, int | float) and not isinstance(value, bool) for value in column)
     return plain and len(set(column)) == len(column)
 
@@ -308,6 +319,7 @@ class Study(Section):
 
     @model_validator(mode="after")
     def _different_keys(self) -> "Study":
+        """Refuse two axes that set the same key."""
         for first, second in combinations(self.axes, 2):
             if (key := common_key(first.keys, second.keys)) is not None:
                 requirement = "keys that the other axis does not set, as one of the two values would be lost"

@@ -52,6 +52,7 @@ class CauseSection(Section):
 
     @model_validator(mode="after")
     def _check_shape(self) -> "CauseSection":
+        """Refuse a cause without the numbers that its distribution needs."""
         asks = {
             "normal": ("spread",),
             "uniform": ("limits",),
@@ -67,7 +68,9 @@ class CauseSection(Section):
         return self
 
     def _check_cut(self) -> None:
-        """The part of a distribution that is left can be sampled, and something is cut off."""
+        """Refuse limits that cut off nothing of a distribution, or so much that the rest cannot
+        be sampled.
+        """
         if self.limits is None or self.shape not in ("normal", "rayleigh") or self.spread is None:
             return
         centre = self.centre if self.shape == "normal" else 0.0
@@ -107,6 +110,7 @@ class LoadMap(Section):
 
     @model_validator(mode="after")
     def _check_loads(self) -> "LoadMap":
+        """Refuse torques and speeds that do not rise, and maps with too many points."""
         for key in ("torque_factors", "speeds_rpm"):
             values = getattr(self, key)
             if list(values) != sorted(set(values)):
@@ -169,6 +173,7 @@ class Tolerances(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "Tolerances":
+        """Check causes, map, samples, indices and chunks; all mistakes are reported together."""
         require_all(
             self._check_causes,
             self._check_map,
@@ -179,6 +184,7 @@ class Tolerances(Section):
         return self
 
     def _check_causes(self) -> None:
+        """Refuse an empty list of causes, and reserved or repeated names."""
         names = [cause.name for cause in self.causes]
         if not names:
             refuse("causes", [], "at least one")
@@ -199,21 +205,25 @@ class Tolerances(Section):
             refuse("correlations", coefficients, "numbers that can hold together: the matrix is not positive")
 
     def _check_map(self) -> None:
+        """Refuse speeds of the load map for a quasi-static model."""
         if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
             refuse("load_map.speeds_rpm", list(self.load_map.speeds_rpm), "none where model is quasi_static")
 
     def _check_samples(self) -> None:
+        """Refuse a number of samples that is no multiple of a chunk's."""
         if self.samples % self.chunk_samples:
             below = max(self.samples // self.chunk_samples, 1) * self.chunk_samples
             refuse("samples", self.samples, f"a multiple of chunk_samples, such as {below}")
 
     def _check_indices(self) -> None:
+        """Refuse blocks of sensitivity indices that are no power of two, or with correlated causes."""
         if self.index_blocks & (self.index_blocks - 1):
             refuse("index_blocks", self.index_blocks, "a power of two, or 0")
         if self.index_blocks and self.correlations:
             refuse("index_blocks", self.index_blocks, "0 where causes are correlated: indices are undefined")
 
     def _check_chunks(self) -> None:
+        """Refuse chunks so small that there would be more than MAX_CHUNKS."""
         count = len(chunks(self, "samples")) + len(chunks(self, "indices"))
         if count > MAX_CHUNKS:
             min_samples = -(-self.chunk_samples * count // MAX_CHUNKS)

@@ -43,6 +43,7 @@ class PinionPlace(Section):
 
     @model_validator(mode="after")
     def _one_angle(self) -> "PinionPlace":
+        """Refuse an angle that is given twice or not at all."""
         if (self.angle_pitches is None) == (self.angle_deg is None):
             refuse("angle_pitches", self.angle_pitches, "given, or else angle_deg, but not both")
         return self
@@ -140,6 +141,7 @@ class Transmission(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "Transmission":
+        """Check names, lags, kinematics, bearings and masses; all mistakes are reported together."""
         require_all(
             self._check_names,
             self._lags,
@@ -167,6 +169,7 @@ class Transmission(Section):
         return self.shafts.get(pinion.name) or self.shafts.get(pinion.role)
 
     def _check_names(self) -> None:
+        """Refuse settings of single parts that the machine does not have."""
         names = [pinion.name for pinion in self.pinions]
         meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
         pinion_keys = [*names, *dict.fromkeys(pinion.role for pinion in self.pinions)]
@@ -186,6 +189,7 @@ class Transmission(Section):
                 refuse(f"excitations[{number}].body", excitation.body, f"one of {', '.join(bodies)}")
 
     def _lags(self) -> None:
+        """Refuse lags of the transmission error for meshes that do not exist."""
         phasing = self.transmission_error.phasing
         names = [
             *(pinion.name for pinion in self.pinions),
@@ -201,6 +205,7 @@ class Transmission(Section):
                 refuse(key, mesh.transmission_error.phasing, "left out: one mesh has no pattern")
 
     def _kinematics(self) -> None:
+        """Refuse keys that the chosen kinematics do not use or lack."""
         radius = self.face_gear.mesh_radius_mm
         if self.mesh_kinematics == "geometric":
             for key, radius_mm in (
@@ -231,7 +236,9 @@ class Transmission(Section):
                 refuse(key, shown_value, "none where mesh_kinematics is printed")
 
     def _held_once(self) -> None:
-        """Every pinion has a shaft or a bearing stiffness, and no stiffness is given in vain."""
+        """Refuse a pinion with neither a shaft nor a bearing stiffness, and a stiffness that has
+        no effect.
+        """
         key, common = "pinion.bearing_stiffness_n_per_m", self.pinion.bearing_stiffness_n_per_m
         by_common = []
         for pinion in self.pinions:
@@ -252,6 +259,7 @@ class Transmission(Section):
             refuse(key, common.model_dump(), "null: every pinion has a shaft, which its bearings hold")
 
     def _masses_named_apart(self) -> None:
+        """Refuse turning masses of one shaft with equal names."""
         for name, chain in self.torsion.items():
             if not chain:
                 refuse(f"torsion.{name}", [], "one turning mass or more")
@@ -261,6 +269,7 @@ class Transmission(Section):
                     refuse(f"torsion.{name}[{number}].name", chain[number].name, requirement)
 
     def _clearance_in_round_bearings(self) -> None:
+        """Refuse clearance in a bearing whose radial stiffness depends on the direction."""
         for pinion in self.pinions:
             single = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS)
             has_own_clearance = single.bearing_clearance_um is not None
@@ -280,6 +289,7 @@ class Transmission(Section):
                 refuse(key, clearance, "0 unless the bearing is round: x = y above 0, without xy")
 
     def _distinct(self) -> None:
+        """Refuse pinions with equal names or with the name of a gear."""
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) < len(names):
             refuse("pinions", names, "names that differ from pinion to pinion")

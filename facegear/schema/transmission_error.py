@@ -56,6 +56,7 @@ class TransmissionError(Section):
     @model_validator(mode="before")
     @classmethod
     def _short(cls, values: Any) -> Any:
+        """Read the short form `from_contact`."""
         if values == "from_contact":
             return {"source": "from_contact"}
         if isinstance(values, Mapping) and isinstance(harmonics := values.get("more_harmonics"), list):
@@ -65,6 +66,7 @@ class TransmissionError(Section):
     @model_validator(mode="before")
     @classmethod
     def _known_phasing(cls, values: Any) -> Any:
+        """Refuse lags that are no fraction of a mesh cycle."""
         phasing = values.get("phasing", "mesh") if isinstance(values, Mapping) else "mesh"
         for name, lag in phasing.items() if isinstance(phasing, Mapping) else ():
             if not isinstance(lag, int | float) or not 0 <= lag < 1:
@@ -75,6 +77,7 @@ class TransmissionError(Section):
 
     @model_validator(mode="after")
     def _orders_once(self) -> "TransmissionError":
+        """Refuse an order of harmonic that is given twice."""
         orders = [1, *(term.order for term in self.more_harmonics)]
         for number, order in enumerate(orders):
             if order in orders[:number]:
@@ -86,6 +89,7 @@ class TransmissionError(Section):
 
     @model_validator(mode="after")
     def _one_source(self) -> "TransmissionError":
+        """Refuse keys that the source of the error lacks or does not use."""
         if self.source == "given":
             if self.amplitude_um is None:
                 refuse("amplitude_um", None, "given, unless transmission_error is from_contact")

@@ -95,6 +95,7 @@ def numbers(value: Any) -> Any:
 
 
 def _text(path: Path) -> str:
+    """Return the text of a config file; refuse directories, long files and other encodings."""
     if path.is_dir():
         raise ConfigErrors(str(path), ["is a directory, not a config file"])
     try:

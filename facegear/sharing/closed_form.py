@@ -115,11 +115,14 @@ class SplitMachine:
         return float(1.0 / (2.0 / self.mesh_stiffness + 4.0 * cosine**2 / idler_bearing))
 
     def _loop(self, idler_bearing: float) -> float:
-        """Misfit that the idlers add to the loop, over the force of an input's lower mesh."""
+        """Return the misfit that the idlers add to the loop of an input's two meshes, over the force of its
+        lower mesh.
+        """
         bending = 2.0 * self.mesh_stiffness * np.cos(self.pressure_angle) ** 2 / idler_bearing
         return float(self.inputs / self.idlers * (1.0 + bending))
 
     def _softness(self, input_bearing: float) -> float:
+        """Return by which factor the bearings of the inputs soften their meshes, dimensionless."""
         return 1.0 + 2.0 * self.mesh_stiffness / input_bearing
 
 

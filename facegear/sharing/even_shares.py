@@ -87,7 +87,10 @@ def even_shares(machine: Machine) -> Array:
 
 
 def _even_forces(layout: Layout, coefficients: Array, on_gears: Array) -> Array:
-    """Forces (meshes,), positive where the pinion drives; own (pinions,): what each torque asks for."""
+    """Return the forces (meshes,), N, positive where the pinion drives, that share every torque evenly.
+
+    `coefficients` (pinions,): force that each pinion's torque needs; `on_gears`: torque on each gear, N m.
+    """
     if len(layout.gears) == 1:
         return coefficients
     inputs = np.array([pinion.role is Role.INPUT for pinion in layout.pinions])
@@ -169,7 +172,7 @@ def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> t
 
 
 def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
-    """Mean coefficient of each group, NaN where nothing is ever loaded."""
+    """Return the mean coefficient of each group, nan where no mesh is ever loaded."""
     forces = np.moveaxis(cycle_forces(motion), 0, -1)
     return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
 

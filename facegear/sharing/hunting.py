@@ -132,7 +132,7 @@ class LoadHistory:
 
 
 def largest(values: Array) -> float:
-    """Return the largest of the defined values.
+    """Return the largest of values, nan left out.
 
     Parameters
     ----------

@@ -156,5 +156,5 @@ def departures(machine: Machine) -> list[str]:
 
 
 def _spread(values: Array) -> float:
-    """Relative difference of the largest and the smallest."""
+    """Return the relative difference of the largest and the smallest value."""
     return float(np.ptp(values) / np.abs(values).max()) if np.size(values) else 0.0

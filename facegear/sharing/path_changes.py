@@ -109,7 +109,7 @@ enough to place a gear that no mesh holds.
 
 
 def floated(machine: Machine, sides: Collection[Side]) -> Machine:
-    """Let face gears move freely in their planes.
+    """Return a machine whose face gears move freely in their planes.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: floa
 
 
 def with_half_backlash(machine: Machine, half: float) -> Machine:
-    """Give every mesh the same backlash.
+    """Return a machine with the same half backlash at every mesh.
 
     Parameters
     ----------

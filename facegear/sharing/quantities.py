@@ -94,7 +94,7 @@ class Tally(NamedTuple):
 
 
 def tally(flank_forces: Array, per_cycle: int, groups: tuple[LoadGroup, ...]) -> Tally:
-    """Count the loads of a motion.
+    """Compute largest and mean loads of the flanks, and how long flanks are open or reversed, over a motion.
 
     Parameters
     ----------
@@ -270,6 +270,7 @@ class _SharingMeshes(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _meshes_that_share(machine: Machine, dynamic: bool) -> _SharingMeshes:
+    """Return groups, meshes and even shares of a machine; shared by equal machines."""
     layout, groups = machine.layout, load_groups(machine.layout)
     sharing_meshes = [mesh for group in groups for mesh in group.meshes]
     return _SharingMeshes(groups, sharing_meshes, even_shares(machine), quantity_names(layout, dynamic))

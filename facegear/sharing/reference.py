@@ -210,6 +210,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
 
 
 def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, object]]:
+    """Return rows of load sharing of each group from forces."""
     rows: list[dict[str, object]] = []
     for group in split_groups(machine.layout):
         group_forces = forces[..., group.meshes]

@@ -143,7 +143,7 @@ class _Run:
     options: SharingOptions
 
     def motion(self, state: State) -> RunPlan[SteadyState]:
-        """Plan the motion that counts."""
+        """Plan the motion from which load sharing is averaged."""
         return steady_motion(self.model, self.speed_rpm, self.settings, self.options, state)
 
     def motion_from_start(self, state: State, orbit: KnownOrbit | None) -> RunPlan[SteadyState | None]:

@@ -10,7 +10,7 @@ from facegear.arrays import Array
 from facegear.machine.flanks import significant_forces
 from facegear.machine.machine import Machine
 from facegear.motion.between_samples import located_extremes
-from facegear.motion.following import FollowedMotion, follow
+from facegear.motion.hunting_motion import FollowedMotion, follow
 from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import build_model
 from facegear.sharing.groups import LoadGroup
@@ -19,7 +19,7 @@ from facegear.sharing.hunting import HuntingCycle, LoadHistory, largest, mesh_ta
 
 @dataclass(frozen=True, eq=False)
 class Running(LoadHistory):
-    """Motion at a speed; `lead` and `memory` as in facegear.motion.following.FollowedMotion."""
+    """Motion at a speed; `lead` and `memory` as in facegear.motion.hunting_motion.FollowedMotion."""
 
     speed_rpm: float
     lead: int

@@ -192,6 +192,7 @@ def _with_step(values: Array, index: int | tuple[int, int], step: float) -> Arra
 
 
 def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
+    """Return imperfections with another runout amplitude of one body, m."""
     runouts: list[Runout] = list(getattr(base, key))
     runouts[body] = replace(runouts[body], amplitude=amplitude)
     values: dict[str, Any] = {key: tuple(runouts)}
@@ -234,6 +235,7 @@ def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) 
 
 
 def _layout_with_bearings(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
+    """Return a layout with another bearing stiffness, N/m, of the pinions of some roles."""
     pinions = tuple(
         replace(
             pinion,

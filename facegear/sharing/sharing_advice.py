@@ -27,6 +27,7 @@ ADVICE_COLUMNS = (
     *("group", "kind", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain"),
     *("worst", "worst_found"),
 )
+"""Columns of the table of advice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +98,12 @@ def advice(machine: Machine, options: MapOptions) -> pd.DataFrame:
 
 
 def _is_loaded(mapped: MappedMachine, group: LoadGroup) -> bool:
+    """Whether a group carries a load and its even shares are known."""
     return bool(np.isfinite(mapped.even(group)).all()) and mapped.load(group) > 0.0
 
 
 def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
-    """Changes of bearings, of floating gears, of tolerances."""
+    """Yield changes of the machine to try: of bearings, floating gears and tolerances."""
     mapped = MappedMachine(machine)
     idlers, inputs = groups_of_kind(machine, GroupKind.IDLERS), groups_of_kind(machine, GroupKind.INPUTS)
     for groups, roles, name in ((inputs, (Role.INPUT,), "inputs"), (idlers, IDLERS, "idlers")):

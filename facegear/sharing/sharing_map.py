@@ -33,6 +33,7 @@ from facegear.sharing.path_changes import (
 )
 
 AS_GIVEN = "as given"
+"""Name of the curve of a machine whose gears float as given."""
 FLOATING: dict[str, tuple[Side, ...]] = {
     AS_GIVEN: (),
     "upper": (Side.UPPER,),
@@ -43,10 +44,15 @@ FLOATING: dict[str, tuple[Side, ...]] = {
 WANDERS = 1e-3
 """Way of a floating gear in its plane, m, beyond which its meshes do not hold it: far more than backlash."""
 PERCENT_COLUMNS = tuple(f"k_gamma_p{level:g}" for level in LEVELS)
+"""Columns of percentiles of K_gamma."""
 CLOSED_COLUMNS = tuple(f"closed_p{level:g}" for level in LEVELS)
+"""Columns of percentiles of the closed form."""
 CURVE_COLUMNS = ("group", "floating", "number", "all_carry", *PERCENT_COLUMNS, *CLOSED_COLUMNS)
+"""Columns of the curves of idlers."""
 INPUT_COLUMNS = ("group", "bearing_factor", "bearing_n_per_m", "number", "k_gamma", "closed")
+"""Columns of the curves of inputs."""
 POINT_COLUMNS = ("torque_n_m", "group", "kind", "load_n", "number", *PERCENT_COLUMNS)
+"""Columns of the machine's points."""
 
 
 def floating_machine(machine: Machine, group: LoadGroup, floating: str) -> MappedMachine | None:

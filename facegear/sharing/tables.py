@@ -65,6 +65,7 @@ def curve_table(sharing: Sharing) -> pd.DataFrame:
 
 
 def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
+    """Return coefficient and envelope of a group over one mesh cycle as a table."""
     samples = group.coefficients.shape[1]
     fraction = np.arange(samples) / samples
     is_undefined = np.isnan(group.coefficients)

@@ -105,7 +105,20 @@ class _Cells:
         return groups[free], np.repeat(np.arange(len(members)), self.count[members])[free]
 
     def ends(self, groups: Integers, position: Integers) -> tuple[Integers, Integers, Integers]:
-        """Return the groups, each once, with the smallest and the largest of their ascending positions."""
+        """Return the groups, each once, with the smallest and the largest position at which each occurs.
+
+        Parameters
+        ----------
+        groups : Integers
+            Number (n,) of the group at each place, an index.
+        position : Integers
+            Position (n,) of each place, an index, in ascending order.
+
+        Returns
+        -------
+        tuple of Integers
+            Groups (g,), first and last position (g,) of each.
+        """
         self.first[groups[::-1]] = position[::-1]
         self.last[groups] = position
         once = groups[self.first[groups] == position]

@@ -24,6 +24,7 @@ Entries = tuple[Array, Integers, Integers, Integers, Array]
 BLOCK = 256
 """Number of columns that are cleared together."""
 SINGULAR = "the stiffness matrix is singular: the body is not held or its mesh is broken"
+"""Message for a matrix that has no factor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +49,7 @@ class Step:
         return int(self.pivots.stop - self.pivots.start)
 
     def columns(self, memory: Array) -> tuple[Array, Array]:
-        """Return the columns of the pivots.
+        """Return the columns of this step's pivots from the memory of all fronts.
 
         Parameters
         ----------

@@ -1,4 +1,8 @@
-"""Symmetric matrices as sums over cells, dense ones, and factors of sparse ones."""
+"""Symmetric matrices as sums over cells, dense ones, and factors of sparse ones.
+
+Dense symmetric positive definite matrices. Where `overwrite` is set, the result may take the place of the
+argument.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -62,7 +66,7 @@ class Part:
         return Part(weighted_matrices, self.rows[members], self.transformation, cell)
 
     def seen_by(self, turn: sp.csr_matrix) -> "Part":
-        """Return the part in other unknowns.
+        """Return the part of the matrix in other unknowns, of which its own are linear combinations.
 
         Parameters
         ----------
@@ -201,7 +205,7 @@ def solve_factored(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
 
 
 def forward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
-    """Multiply by the inverse of a lower factor.
+    """Solve with the lower factor of a matrix: multiply by its inverse.
 
     Parameters
     ----------

@@ -17,10 +17,14 @@ ROOT_STRESS_COLUMNS = (
     "at_30_deg_mpa",
     "smallest_mpa",
 )
+"""Columns of table `root_stress`; units stand in the names."""
 PASSAGE_COLUMNS = ("torque_n_m", "body", "fillet", "passage", "largest_mpa", "smallest_mpa")
+"""Columns of stress over the passage of a tooth."""
 ALONG_FACE_COLUMNS = ("torque_n_m", "body", "fillet", "radius_mm", "largest_mpa", "smallest_mpa")
+"""Columns of stress along the face."""
 
 ROOT_STRESS_BY_FLANK_COLUMNS = ("gear", "flank", *ROOT_STRESS_COLUMNS)
+"""Columns of root stress of each gear's flanks."""
 ROOT_STRESS_ARRAYS = {
     "torque_n_m": (None,),
     "flank_variant": (2, 2),
@@ -60,6 +64,7 @@ SAFETY_COLUMNS = (
     "caveat",
     "within_torques_solved",
 )
+"""Columns of table `safety`."""
 SCUFFED_COLUMNS = ("scuffing_safety", "scuffing_margin_k", "smallest_film_ratio", "micropitting_safety")
 """Further columns of the table of safety where section lubrication is given (the running machine)."""
 RATED_FLANK = ("body", "gear", "flank", "failure", "method")
@@ -80,7 +85,9 @@ RATING_COLUMNS = (
     "reliability",
     "within_torques_solved",
 )
+"""Columns of table `rating`."""
 CURVE_COLUMNS = (*RATED_FLANK, "cycles", "allowed_mpa")
+"""Columns of allowed stress over cycles."""
 DAMAGE_COLUMNS = (
     *RATED_FLANK,
     "bin",
@@ -92,6 +99,7 @@ DAMAGE_COLUMNS = (
     "damage",
     "within_torques_solved",
 )
+"""Columns of damage by bin."""
 
 DUTY_LOAD_COLUMNS = (
     "bin",
@@ -117,17 +125,22 @@ RATING_FINITE = tuple(
     for name in RATING_COLUMNS
     if name not in ("stress_error_mpa", "reason", "caveat", "damage", "life_hours", "reliability")
 )
+"""Columns of `rating` that hold a value in every row."""
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
+"""Columns of damage that hold a value in every row."""
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
     if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
     and name not in ("reason", "caveat")
 )
+"""Columns of `safety` that hold a value in every row."""
 MAY_BE_UNKNOWN = ("largest_error_mpa", "at_30_deg_mpa")
+"""Columns of root stress that may be empty."""
 ROOT_STRESS_BY_FLANK_FINITE = tuple(
     name for name in ROOT_STRESS_BY_FLANK_COLUMNS if name not in MAY_BE_UNKNOWN
 )
+"""Columns of root stress by flank that hold a value in every row."""
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name not in MAY_BE_UNKNOWN)
 """Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, the
 error of a mesh of few elements is not known, and edges may carry all load, where pressure has no limit."""
@@ -147,6 +160,7 @@ DYNAMIC_STRESS_COLUMNS = (
     "pressure_bound_mpa",
     "within_torques_solved",
 )
+"""Columns of root stress in motion; units stand in the names."""
 DYNAMIC_STRESS_FINITE = tuple(
     name for name in DYNAMIC_STRESS_COLUMNS if name != "dynamic_factor" and not name.startswith("pressure")
 )

@@ -13,7 +13,7 @@ from facegear.machine.flanks import NO_LOAD
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
 from facegear.motion.between_samples import located_by_cycle
-from facegear.motion.following import MEMORY_LIMIT, follow
+from facegear.motion.hunting_motion import MEMORY_LIMIT, follow
 from facegear.motion.plan import Motion, Settings
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.sharing.even_shares import even_shares

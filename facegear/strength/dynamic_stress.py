@@ -47,6 +47,7 @@ def dynamic_stress_table(
 def _row(
     mesh: str, force: Array, positions: Array, base_radius: float, contacts: Mapping[str, FlankContact]
 ) -> tuple[str | float | bool, ...]:
+    """Return the row of one mesh: forces, dynamic factor, stress and pressure."""
     mean, max_force = float(np.abs(force).mean()), float(np.abs(force).max())
     by_flank = {"drive": np.maximum(force, 0.0), "back": np.maximum(-force, 0.0)}
     loaded_flanks = {flank: part for flank, part in by_flank.items() if part.any()} or {

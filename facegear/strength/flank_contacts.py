@@ -1,4 +1,9 @@
-"""Root stress and pressure of each contact of a machine, and of the flanks that a rated flank meets."""
+"""Root stress and pressure of each contact of a machine, and of the flanks that a rated flank meets.
+
+Root stress and pressure of the flanks that a rated flank works with: the worst where there are several. A
+pinion's flank meets both face gears. Teeth that are loaded equally both ways meet with both flanks. Each of
+these contacts has errors of its own.
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -64,7 +69,7 @@ class TensionHistory:
 
 
 def _cell(edges: Array, values: Array) -> tuple[Integers, Array]:
-    """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
+    """Return the cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
     cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
     return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)
 

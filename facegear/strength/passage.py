@@ -1,4 +1,14 @@
-"""Root stress of a tooth on its way through the mesh, its largest value, and its error along the face."""
+"""Root stress of a tooth on its way through the mesh, its largest value, and its error along the face.
+
+Error of root stress from the distance of planes along the face, by a mesh with twice that distance. A section
+of the tooth shows what the mesh misses across the profile (`facegear.contact.root_gauges`). It does not
+show how contact is spread over the planes along the face, nor how they follow the stress to a sharp end.
+
+Stress is linear in the forces. The largest that a unit force on a node makes anywhere down the fillet, in one
+plane across the face, bounds what all forces together can make there; stress is only superposed where this
+bound exceeds the largest that is known. Forces, all compressed by rows, stand tooth by tooth and position by
+position.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -285,16 +295,18 @@ def face_error(root: RootStress, coarser: RootStress) -> float:
 
 
 def _along_face(stress: Array) -> Array:
-    """Largest tension (b,) below the loaded flank of stress (n, 2, a, b) over a passage."""
+    """Return the largest tension (b,), Pa, below the loaded flank over a passage, of stress (n, 2, a, b)."""
     return np.asarray(down_the_fillet(stress[:, 0]).max(axis=(0, 1)))
 
 
 def _positions(root: RootStress) -> Array:
-    """Position (n,) in the pitch of each place of the passage."""
+    """Return the position in the pitch (n,) of each place of the passage."""
     return np.round(root.passage % 1.0, 9)
 
 
 def _worst_positions(root: RootStress) -> set[float]:
-    """Positions in the pitch where tension is largest at the smallest and at the largest torque."""
+    """Return the positions in the pitch where tension is largest at the smallest and at the
+    largest torque.
+    """
     worst = {int(root.stress[row, :, 0].max(axis=(1, 2)).argmax()) for row in (0, -1)}
     return {float(_positions(root)[index]) for index in worst}

@@ -100,7 +100,7 @@ class FailureRating:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Loads whose stress the method does not know."""
+        """Remarks on loads whose stress the rating method does not know."""
         caveats = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
             caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
@@ -184,7 +184,7 @@ def rate(
 
 
 def _stress_by_load(stress: Stress, duty: FlankDuty) -> Array:
-    """Stress (n,) Pa at every load."""
+    """Return the stress (n,), Pa, at every load of the duty cycle."""
     return np.array([stress(torque) for torque in duty.torque])
 
 
@@ -198,6 +198,7 @@ def _rate_failure(
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
 ) -> FailureRating:
+    """Rate one failure by one method: damage, safety and life under the duty cycle."""
     harm = damage(by_load, duty.cycles, allowed_stress, limits.life)
     total = float(harm.sum())
     loads = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]

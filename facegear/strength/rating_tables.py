@@ -75,7 +75,7 @@ def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) ->
 
 
 def _worst_ways(ways: Sequence[FailureRating]) -> list[FailureRating]:
-    """Return of each failure the method with the smallest safety."""
+    """Return for each kind of failure the rating method with the smallest safety."""
     return [
         min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)
         for failure in dict.fromkeys(rating.failure for rating in ways)
@@ -132,7 +132,7 @@ def _without_empty_reliability(table: pd.DataFrame, ratings: Sequence[FailureRat
 
 
 def _error(rating: FailureRating, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
-    """Error of the stress (Pa) under the hardest load, nan where it is not known."""
+    """Return the error of the stress, Pa, under the hardest load; nan where it is not known."""
     if rating.method == "contact analysis":
         return pressure.error_at(rating.duty.largest)
     return (
@@ -201,11 +201,12 @@ def damage_table(
 
 
 def _subject(rating: FailureRating) -> tuple[str, ...]:
+    """Return the columns that identify a rating: body, gear, flank, failure, method."""
     return rating.duty.body, rating.duty.gear, rating.duty.flank, rating.failure, rating.method
 
 
 def _within(rating: FailureRating, pressure: ContactPressure) -> np.ndarray:
-    """Whether each load lies within the torques of the contact analysis, (n,)."""
+    """Return whether each load (n,) lies within the torques of the contact analysis."""
     return pressure.within(rating.duty.torque) | (rating.duty.cycles == 0.0)
 
 

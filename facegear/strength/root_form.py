@@ -39,7 +39,7 @@ GRADIENT = 0.2
 
 
 def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """Return Z_E of two bodies.
+    """Return the elasticity factor Z_E of two bodies (ISO 6336-2).
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -
 
 
 def contact_ratio_factor(contact_ratio: float) -> float:
-    """Return Z_epsilon of spur gears.
+    """Return the contact ratio factor Z_epsilon of spur gears (ISO 6336-2).
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def contact_ratio_factor(contact_ratio: float) -> float:
 
 
 def relative_notch_sensitivity(slip_layer: float, notch_parameter: float) -> float:
-    """Return Y_delta rel T for the endurance limit.
+    """Return the relative notch sensitivity factor Y_delta rel T for the endurance limit (ISO 6336-3).
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def relative_surface_factor(roughness: float) -> float:
 
 
 def size_factor(module: float) -> float:
-    """Return Y_X of case-carburised steel for the bending limit.
+    """Return the size factor Y_X (ISO 6336-3) of case-carburised steel for the bending limit.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def root_form(gear: SpurGear, load_radius: float) -> RootForm:
 
 
 def stress_correction(slenderness: float, notch_parameter: float) -> float:
-    """Return Y_S, stated for 1 <= q_s < 8.
+    """Return the stress correction factor Y_S (ISO 6336-3), stated for 1 <= q_s < 8.
 
     Parameters
     ----------
@@ -237,6 +237,7 @@ def stress_correction(slenderness: float, notch_parameter: float) -> float:
 
 
 def _tangent_angle(g: float, h: float, teeth: int) -> float:
+    """Solve for the angle of the critical section's tangent, rad, by fixed-point iteration."""
     angle = pi / 6.0
     for _ in range(ITERATIONS):
         next_angle = 2.0 * g / teeth * tan(angle) - h

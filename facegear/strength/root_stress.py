@@ -51,8 +51,8 @@ class RootStress:
 
     @cached_property
     def scale(self) -> Scale:
-        """Growth of stress with torque: that of its largest value between solved torques, in proportion
-        beyond.
+        """Growth of stress with torque, interpolated by its largest value between solved torques and in
+        proportion beyond.
         """
         largest = self.stress.reshape(len(self.torques), -1).max(axis=1)
         return scale(self.torques, largest, LONE, 1.0)

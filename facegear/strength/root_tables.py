@@ -57,7 +57,7 @@ def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
 
 
 def _peak(root: RootStress, side: int, fine: Array) -> tuple[float, ...]:
-    """Columns from `largest_mpa` on."""
+    """Return the columns of the table of root stress from `largest_mpa` on, for one fillet."""
     when, down, column = np.unravel_index(np.argmax(fine), fine.shape)
     angle = down_the_fillet(root.angle[side])
     return (

@@ -277,5 +277,6 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
 
 
 def _width(design: PairDesign) -> float:
+    """Return the common face width of both gears, m."""
     gear = design.face_gear
     return min(design.pinion.width, gear.outer_radius - gear.inner_radius)

@@ -40,7 +40,7 @@ class SearchedMachine(VariedMachine):
 
     @property
     def values(self) -> dict[str, Any]:
-        """Plain values that may be free."""
+        """Plain values of the config that variables may change."""
         return variable_part(self.transmission, self.tooth_pair, self.speed_rpm)
 
 
@@ -125,6 +125,7 @@ def assessor(
 def _goal(
     goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, sample_quantities: Sequence[Quantities]
 ) -> float:
+    """Return the value of an objective or constraint: nominal, or a percentile over samples."""
     columns = [name for start in goal.quantities for name in matching_names(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:

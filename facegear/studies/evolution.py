@@ -271,6 +271,7 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
 
 
 def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) -> dict[str, Any]:
+    """Evaluate one design; an error becomes a row with its text."""
     try:
         values = evaluate(design)
         objectives = [float(values[name]) for name in goals]
@@ -285,6 +286,7 @@ def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) ->
 
 
 def _algorithm(task: Task, effort: Effort) -> Any:
+    """Return the genetic algorithm (NSGA-II) whose variables stay on their grid."""
     from pymoo.algorithms.moo.nsga2 import NSGA2  # a library of the extra `search`
     from pymoo.core import problem as problems
     from pymoo.core import repair

@@ -37,7 +37,7 @@ class LubricatedTeeth:
     few: FewPlaces
 
     def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
-        """Return the pair with a lubrication.
+        """Return the lubricated pair with its contact at every torque.
 
         Parameters
         ----------
@@ -176,5 +176,5 @@ def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
 
 
 def _unsolved(losses: MachineLoss) -> float:
-    """Part of the loss that arises under torques outside those of the contact analysis."""
+    """Return the part of the loss that arises under torques outside those of the contact analysis."""
     return float(losses.loss[~losses.within].sum() / losses.total) if losses.total > 0.0 else 0.0

@@ -48,7 +48,7 @@ from facegear.studies.varied_bodies import VariedBodies
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """Function that returns the quantities of a machine by column, given values of
-`config.changes.variable_part`.
+`facegear.schema.changes.variable_part`.
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged.
 """
@@ -78,7 +78,7 @@ class Question:
 
     @property
     def dynamic(self) -> bool:
-        """Whether the motion is asked for."""
+        """Whether the question is answered by the motion, not by statics."""
         return self.model == "dynamic"
 
 
@@ -126,12 +126,12 @@ class VariedMachine:
 
     @cached_property
     def meshes(self) -> Meshes:
-        """The mesh of each one's tooth pair."""
+        """Source of mesh stiffness and errors for each varied tooth pair."""
         return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
 
     @cached_property
     def varied_bodies(self) -> "VariedBodies | None":
-        """The face gears of each one where they bend."""
+        """Face gears that bend, computed anew where a varied machine changes them."""
         if self.solid is None or self.bodies is None:
             return None
         return VariedBodies.of_stage(self.transmission, self.solid, self.bodies)
@@ -144,7 +144,7 @@ class VariedMachine:
         return PoseSurface.of_arrays(self.poses)
 
     def judge_of(self, question: Question, label: str, nominal: Values | None = None) -> Judge:
-        """Return the function that judges each machine.
+        """Return the function that computes the quantities of each varied machine.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class VariedMachine:
 
     @property
     def friction(self) -> bool:
-        """Whether friction is asked for."""
+        """Whether quantities of friction are asked for."""
         return False
 
     def identity(self, *parts: object) -> str:
@@ -277,7 +277,7 @@ def judge(
     surface: "PoseSurface | None" = None,
     nominal: Values | None = None,
 ) -> Judge:
-    """Return a function that builds and judges a machine.
+    """Return a function that builds a varied machine and computes its quantities.
 
     Parameters
     ----------
@@ -354,6 +354,7 @@ def judge(
 
 
 def _ask(question: Question) -> Callable[[Machine, float, Guide | None], MachineQuantities]:
+    """Return the function that answers a question on a machine, at rest or in motion."""
     if not question.dynamic:
         return lambda lumped_machine, speed, guide: quasi_static_quantities(
             at_rest(lumped_machine), question.cycles
@@ -363,5 +364,6 @@ def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Machine
 
 
 def _precision(question: Question) -> tuple[Settings, SharingOptions]:
+    """Return settings of the motion and of load sharing for samples."""
     precise = settings(Accuracy.of_config(question.accuracy))
     return precise, replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)

@@ -186,7 +186,7 @@ class SampledMachine(VariedMachine):
         return values | cycle_deviations | (self._reduction_errors(sample, values) if self.friction else {})
 
     def _reduction_errors(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return the error of the few points of the contact: columns SIMPLIFIED."""
+        """Return the error of the few points of the contact: columns of SIMPLIFICATION_ERRORS."""
         whole = self.thorough_judge(sample)
         off = {
             name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFICATION_ERRORS
@@ -195,7 +195,7 @@ class SampledMachine(VariedMachine):
         return {column: off[name] for name, column in SIMPLIFICATION_ERRORS.items()}
 
     def _cycle_deviations(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return the error of the mesh cycles taken: columns MISSED."""
+        """Return the errors by the mesh cycles left out: columns of CYCLE_SELECTION_ERRORS."""
         whole = self.whole_judge(sample)
         paths = matching_names(f"{K_GAMMA} ", list(whole))
         deviations = {name: whole[name] - values[name] for name in (OPEN_FRACTION, REVERSED_FRACTION)}

@@ -65,10 +65,12 @@ class Distribution:
 
     @property
     def _limits(self) -> tuple[float, float]:
+        """Lower and upper limit of the values, infinite where none is given."""
         return self.limits if self.limits is not None else (-np.inf, np.inf)
 
     @property
     def _scipy_distribution(self) -> "scipy.stats.rv_frozen":
+        """Distribution without limits as SciPy has it."""
         if self.shape is Shape.RAYLEIGH:
             return scipy.stats.rayleigh(scale=self.spread)
         return scipy.stats.norm(self.centre, self.spread)
@@ -197,6 +199,7 @@ def changes(population: Population, values: Sequence[float]) -> dict[str, float]
 
 
 def _sobol(dimensions: int, seed: int, start: int, count: int) -> Array:
+    """Return scrambled Sobol points (count, dimensions) from number `start` on, in (0, 1)."""
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
     if start:
         sequence.fast_forward(start)
@@ -220,6 +223,7 @@ def _correlated(probability: Array, factor: Array | None) -> Array:
 
 
 def _values(causes: tuple[Cause, ...], probability: Array) -> Array:
+    """Return the values (samples, causes) at given cumulative probabilities."""
     columns = [cause.distribution.quantile(probability[:, i]) for i, cause in enumerate(causes)]
     return np.column_stack(columns)
 

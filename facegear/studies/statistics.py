@@ -141,7 +141,9 @@ def sobol_indices(
 
 
 def _indices(blocks: Array) -> Array:
-    """First-order and total indices (2, causes) of whole blocks; a resample at a time, to save memory."""
+    """Return first-order and total sensitivity indices (2, causes) of whole blocks, one resample at a time to
+    save memory.
+    """
     functions = {"f_A": blocks[None, :, 0], "f_B": blocks[None, :, 1], "f_AB": blocks[:, 2:].T[:, None, :]}
     estimate = scipy.stats.sobol_indices(func=functions, n=len(blocks))
     return np.array([estimate.first_order.ravel(), estimate.total_order.ravel()])

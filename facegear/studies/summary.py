@@ -81,6 +81,7 @@ def run_chunk(
 
 
 def _record(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
+    """Evaluate one sample; an error becomes a record with its text."""
     try:
         values = evaluate(number)
     except FacegearError as error:
@@ -293,5 +294,6 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
 
 
 def _nan_if_unbounded(estimate: Estimate) -> tuple[float, float, float]:
+    """Return value and interval of an estimate, with nan for an infinite end."""
     low, high = (end if np.isfinite(end) else np.nan for end in (estimate.low, estimate.high))
     return estimate.value, low, high

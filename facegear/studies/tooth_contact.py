@@ -180,6 +180,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = 
 
 
 def _request(pair: Values) -> StiffnessRequest:
+    """Return what is asked of the mesh stiffness by a pair's config."""
     return stiffness_request(MeshStiffness.of_config(pair["mesh_stiffness"]))
 
 
@@ -190,6 +191,7 @@ def _answers(
     stiffness: LoadTable,
     request: StiffnessRequest,
 ) -> PairAnswers:
+    """Return stiffness, error, pressure and root stress of a pair from its contact."""
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
     approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
@@ -236,7 +238,7 @@ def _bodies(
 
 
 def _tensions(flanks: Flanks) -> Tensions:
-    """They are the same for every Young's modulus."""
+    """Return the passing root stress of each body with gauges; it is the same for every Young's modulus."""
     return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
 
 

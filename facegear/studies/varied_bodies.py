@@ -89,6 +89,7 @@ class VariedBodies:
         return replace(machine, bodies=elastic, softening=elastic.softening())
 
     def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
+        """Return a reduced face gear from the cache, or compute it; the oldest one goes."""
         key = _key(section, pair)
         if key not in self.cache:
             if len(self.cache) >= CACHED_BODIES:
@@ -98,7 +99,7 @@ class VariedBodies:
 
 
 def _key(section: BodySection, pair: ToothPair) -> Hashable:
-    """All that a body depends on."""
+    """Return a hashable key of everything on which a reduced face gear depends."""
     shape = body_shape(section, pair)
     mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
     fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
@@ -106,13 +107,14 @@ def _key(section: BodySection, pair: ToothPair) -> Hashable:
 
 
 def _nominal_teeth(design: PairDesign) -> Hashable:
-    """All that the nominal teeth of a face gear depend on."""
+    """Return a hashable key of everything on which the nominal teeth of a face gear depend."""
     gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
     pinion = design.pinion.teeth, design.pinion.profile_shift
     return (design.module, design.pressure_angle, pinion, gear, design.shaper)
 
 
 def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
+    """Compute the reduced model of a face gear that bends."""
     shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
     solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
     return reduced_body(solution, contact_patch(section, pair), *section.damping)

@@ -19,7 +19,7 @@ from facegear.teeth.curvature import relative_curvatures
 from facegear.teeth.design import PairDesign
 from facegear.teeth.limits import RadiusLimits
 from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle, to_pinion_section
-from facegear.teeth.unloaded import UnloadedContact, unloaded_contact
+from facegear.teeth.unloaded_contact import UnloadedContact, unloaded_contact
 from facegear.teeth.validate import check
 
 REGULAR_CONTACTS = {("flank", "flank"), ("flank", "tip edge"), ("tip land", "flank")}

@@ -1,4 +1,9 @@
-"""Outline of the pinion's tooth, and the smallest gap between the whole teeth over a pitch."""
+"""Outline of the pinion's tooth, and the smallest gap between the whole teeth over a pitch.
+
+Smallest gap between the whole teeth over a pitch, fillets, tips and lands included: finds interference.
+Points of the gear's tooth (tip edge, flank, fillet, root land) are brought into the pinion's section, and the
+signed distance to the tooth outline is taken; negative means that the gear stands inside the pinion.
+"""
 
 from dataclasses import dataclass
 from math import copysign, inf, pi
@@ -14,7 +19,9 @@ from facegear.teeth.modifications import fillet_as_made, flank_as_made
 from facegear.teeth.placement import mirror_design, to_pinion_section
 
 PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
+"""Parts of a pinion tooth, from tip to root."""
 _MODIFIED_PARTS = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
+"""Indices of the parts that modifications change."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +94,12 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
 
 
 def _upright(normal: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return a normal with its second component reversed."""
     return normal[0], -normal[1]
 
 
 def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array, Array]]:
+    """Return points and normals along the chamfer of a pinion's tip."""
     (r0, a0) = design.pinion_tip_radius, pinion.tip_half_angle(design)
     r1, a1 = (float(part) for part in pinion.involute_point(design, design.pinion_tip_roll))
     start, end = (np.array([r * np.sin(a), r * np.cos(a)]) for r, a in ((r0, a0), (r1, a1)))
@@ -143,6 +152,7 @@ def signed_distance(
 
 
 TOOTH_NUMBERS = np.arange(-2.0, 3.0)
+"""Numbers of the teeth that may come near each other."""
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,8 @@ def flank_frame(
 
 
 def normal(turn: Numbers, psi: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Compute the outward unit normal.
+    """Compute the outward unit normal of the generated flank at a point, from its slope and the gear's
+    rotation.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ class FlankGaps:
 
     @classmethod
     def of_pairs(cls, design: PairDesign, phi1: Array, phi2: Array, tooth: Array) -> Self:
-        """Return the pairs at given angles.
+        """Return the gaps of pairs of teeth at given angles of both gears.
 
         Parameters
         ----------
@@ -45,7 +45,7 @@ class FlankGaps:
         return cls(design, GearSide.of_design(design), to_left_flank(design, phi1, phi2, tooth))
 
     def only(self, rows: AnyArray) -> Self:
-        """Return some of the pairs.
+        """Return the gaps of some of the pairs.
 
         Parameters
         ----------
@@ -93,9 +93,12 @@ _ACROSS, _ALONG = (part.ravel() for part in np.meshgrid(*2 * [np.linspace(-1.0, 
 _ON_BORDER = np.stack([np.abs(_ACROSS) == 1.0, np.abs(_ALONG) == 1.0], axis=-1)
 """Mask (25, 2) of the points that are on the border, across the roll and along y."""
 _SHRINK, _GROWTH, _MAX_STEPS = 0.55, 1.5, 60
+"""Factors on a grid's size where its middle or its border holds the minimum, and the largest number of grids.
+Free choices that affect time alone; the minimum is polished after them."""
 _GAIN = 1e-13
 """By how much (m) a gap must be less to count as such."""
 _STENCIL = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
+"""Steps of a 3 x 3 grid around its middle."""
 _STEP = np.array([2e-4, 1e-4])
 """Distance of the stencil's points, in roll (rad) and y (m)."""
 _FIRST, _LEVELS = 5, 10
@@ -162,7 +165,7 @@ def closest(
 
 
 def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
-    """All pairs at p placements, (5 p,)."""
+    """Return the gaps of all 5 pairs of teeth at p placements, (5 p,)."""
     turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
     return FlankGaps.of_pairs(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
@@ -186,6 +189,7 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
 
 
 def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
+    """Return the closest points of each pair by coarse grids, and the size of a grid's cell."""
     low, high = bounds(design)
     face = design.face_gear
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
@@ -290,7 +294,9 @@ class _Bowl:
 
 
 def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """One Newton step from a 3 x 3 stencil where the minimum lies inside the flank."""
+    """Improve minima (gap, m, roll, rad, y, m) by one Newton step from a 3 x 3 stencil, where they lie inside
+    the flank.
+    """
     bowl = _bowl(pairs, roll, y, np.tile(_STEP, (len(roll), 1)))
     low, high = bounds(pairs.design)
     new_roll, new_y = roll + bowl.across * _STEP[0], y + bowl.along * _STEP[1]
@@ -308,7 +314,7 @@ def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Arra
 
 
 def _bowl(pairs: FlankGaps, roll: Array, y: Array, step: Array) -> _Bowl:
-    """The paraboloid through 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
+    """Return the paraboloid through gaps on 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
     rolls, ys = (
         at[:, None] + _STENCIL[:, axis] * step[:, axis : axis + 1] for axis, at in ((0, roll), (1, y))
     )

@@ -7,6 +7,11 @@ gear's axis and h = m (N_s - N_1) / 2, psi solves the condition that the normal 
 cylinder; the transmission error is stationary there. For parallel planes of the axes (no error of the shaft
 angle) it reads cos psi (h - dq) - sin psi dE = h cos a0. Derived for this project from the generated flank of
 `face_gear`; confirmed against rigid displacements of either body.
+
+Derivatives of transmission error and path of the exact unloaded contact by the pose of a pair. The
+transmission error is stationary in the slope psi of the common normal, so that its derivatives are those at
+constant psi: by offset and axial shift they are the normal itself. The path follows psi, whose derivatives
+come from the condition that this module solves.
 """
 
 from dataclasses import astuple, dataclass
@@ -21,6 +26,7 @@ from facegear.teeth import pinion
 from facegear.teeth.design import AssemblyErrors, GearModifications, PairDesign
 
 STEPS = 60
+"""Largest number of Newton steps; a search that needs more has no solution."""
 ROUNDING = 1e-12
 """Step of psi (rad) by which differences for the slope are off."""
 
@@ -91,7 +97,7 @@ class PairNumbers:
 
     @property
     def array(self) -> Array:
-        """All of them, (11,)."""
+        """All numbers of the pair as one array (11,), as it is stored."""
         return np.array(astuple(self))
 
 
@@ -241,7 +247,11 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
 
 
 def _slope(pair: PairNumbers, errors: AssemblyErrors) -> float | None:
-    """psi by Newton's method from the pressure angle, with differences for the slope; None without any."""
+    """Solve for the angle psi of the contact normal by Newton's method; None where there is no conjugate
+    contact.
+
+    It starts from the pressure angle, with difference quotients for the slope.
+    """
     psi, width = pair.pressure_angle, 1e-5
     for _ in range(STEPS):
         if not abs(psi) < 0.5 * pi - width:
@@ -258,7 +268,7 @@ def _slope(pair: PairNumbers, errors: AssemblyErrors) -> float | None:
 
 
 def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
-    """By how much (m) the normal of slope psi misses the pinion's base cylinder."""
+    """Return by how much (m) the normal of slope psi misses the pinion's base cylinder."""
     tilt, turn = errors.shaft_angle_error, _turn(errors, psi)
     across = cos(turn) * cos(tilt)
     from_axis = _rotate((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
@@ -271,7 +281,9 @@ def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
 
 
 def _turn(errors: AssemblyErrors, psi: float) -> float:
-    """The normal is square to the pinion's axis."""
+    """Return the rotation of the contact normal about the gear's axis, rad, by which it is square to the
+    pinion's axis.
+    """
     return asin(max(-1.0, min(1.0, tan(psi) * tan(errors.shaft_angle_error))))
 
 
@@ -300,7 +312,7 @@ def without_modifications(design: PairDesign) -> bool:
 
 
 def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]:
-    """First and last roll angle (rad) of the pinion that lie on both flanks."""
+    """Return the first and last roll angle (rad) of the pinion at which the contact lies on both flanks."""
     start, slope = (_point(design, contact, roll)[2] for roll in (0.0, 1.0))
     slope -= start
     base, lift = design.shaper_base_radius, design.shaper_lift
@@ -310,7 +322,7 @@ def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]
 
 
 def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[float, float, float]:
-    """Contact (m) in the gear's frame where it stands at a roll angle of the pinion."""
+    """Return the contact point (m) in the gear's frame at a roll angle of the pinion."""
     base, on_pinion = design.pinion_base_radius, acos(cos(contact.psi) * cos(contact.turn))
     x = base * (roll * cos(on_pinion) - sin(on_pinion))
     z = -base * (roll * sin(on_pinion) + cos(on_pinion))
@@ -324,7 +336,7 @@ def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[
 
 
 def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
-    """Distance (m) of the way of contact from the gear's axis."""
+    """Return the smallest distance (m) of the way of contact from the gear's axis."""
     x, y, _ = _point(design, contact, 0.0)
     second_point = _point(design, contact, 1.0)
     direction = atan2(second_point[1] - y, second_point[0] - x)
@@ -332,11 +344,13 @@ def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
 
 
 def _rotate(vector: tuple[float, float, float], angle: float) -> tuple[float, float, float]:
+    """Rotate a vector about z by an angle, rad."""
     x, y, z = vector
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z
 
 
 def _dot(first: tuple[float, float, float], second: tuple[float, float, float]) -> float:
+    """Return the dot product of two vectors."""
     return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 
@@ -391,7 +405,9 @@ def conjugate_slopes(pair: PairNumbers, errors: AssemblyErrors, contact: Conjuga
 def _condition_slopes(
     pair: PairNumbers, errors: AssemblyErrors, psi: float, turn: float
 ) -> tuple[float, float, Array]:
-    """Derivatives of the condition on psi by psi, by the turn of the normal, and by the errors (3,)."""
+    """Return derivatives of the condition on psi by psi, by the rotation of the normal, and by the errors
+    (3,).
+    """
     tilt, base = errors.shaft_angle_error, pair.gear_base_radius
     across = cos(turn) * cos(tilt)
     along = errors.offset * cos(turn) + pair.mean_radius * sin(turn)

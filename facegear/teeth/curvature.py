@@ -90,8 +90,9 @@ def opposite_curvatures(
 
 
 def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Curvatures (1/m) that deviations of the pinion add, convex positive: across the profile, where its arc
-    grows by r_b th dth, along the axis, and their twist.
+    """Return the curvatures (1/m), convex positive, that deviations of the pinion add.
+
+    They are across the profile, where its arc grows by r_b th dth, along the axis, and their twist.
     """
     grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
     slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
@@ -167,6 +168,7 @@ def smallest_radius(design: PairDesign, body: str) -> float:
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
+    """Return the smallest radius of curvature of a curve given by points, m."""
     dx, dz = np.gradient(x), np.gradient(z)
     bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
     return float(1.0 / bend[2:-2].max())

@@ -80,6 +80,7 @@ class DeviationGrid:
 
     @cached_property
     def _hash(self) -> int:
+        """Hash of the grid, computed once."""
         return hash((self.face, self.profile, self.deviation))
 
     def __hash__(self) -> int:
@@ -122,7 +123,7 @@ class PinionGeometry:
 @dataclass(frozen=True)
 class GearModifications:
     """Modifications that take material off both flanks of the face gear along the normal; see
-    `gear_modifications`.
+    `facegear.teeth.modifications`.
 
     lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m)
     at the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip,
@@ -207,18 +208,22 @@ class PairDesign:
 
     @cached_property
     def pinion_pitch_radius(self) -> float:
+        """Pitch radius of the pinion, m."""
         return self.module * self.pinion.teeth / 2
 
     @cached_property
     def pinion_base_radius(self) -> float:
+        """Base radius of the pinion, m."""
         return self.pinion_pitch_radius * cos(self.pressure_angle)
 
     @cached_property
     def pinion_tip_radius(self) -> float:
+        """Tip radius of the pinion, profile shift included, m."""
         return self.pinion_pitch_radius + self.pinion.addendum + self.pinion.profile_shift
 
     @cached_property
     def pinion_root_radius(self) -> float:
+        """Root radius of the pinion, profile shift included, m."""
         return self.pinion_pitch_radius - self.pinion.dedendum + self.pinion.profile_shift
 
     @cached_property
@@ -236,14 +241,17 @@ class PairDesign:
 
     @cached_property
     def shaper_pitch_radius(self) -> float:
+        """Pitch radius of the shaper, m."""
         return self.module * self.shaper.teeth / 2
 
     @cached_property
     def shaper_base_radius(self) -> float:
+        """Base radius of the shaper, m."""
         return self.shaper_pitch_radius * cos(self.pressure_angle)
 
     @cached_property
     def shaper_tip_radius(self) -> float:
+        """Tip radius of the shaper, m."""
         return self.shaper_pitch_radius + self.shaper.addendum + self.pinion.profile_shift
 
     @cached_property
@@ -284,14 +292,17 @@ class PairDesign:
 
     @cached_property
     def gear_tip_plane(self) -> float:
+        """Height z of the face gear's tip plane, m."""
         return self.pitch_plane + self.face_gear.addendum
 
     @cached_property
     def gear_root_plane(self) -> float:
+        """Height z of the face gear's root plane, which the shaper's tip generates, m."""
         return self.shaper_lift - self.shaper_tip_radius
 
     @cached_property
     def gear_back_plane(self) -> float:
+        """Height z of the back of the face gear's rim, m."""
         return self.gear_root_plane - self.face_gear.rim_thickness
 
     @cached_property

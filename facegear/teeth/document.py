@@ -15,22 +15,30 @@ from facegear.teeth.placement import conjugate_angle
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_points
-from facegear.teeth.unloaded import UnloadedContact
+from facegear.teeth.unloaded_contact import UnloadedContact
 
 
 @dataclass(frozen=True)
 class EaseOff:
-    """On a grid (n_profile, n_width) of pinion flank points, roll (rad) and y (m).
+    """Separation of the flanks on a grid of points of the pinion's flank.
 
-    gap: smallest separation (m) from the gear's flank while the tooth passes through the mesh; facing:
-    whether the point meets the gear's flank at all (gap, radius, height are zero where not); radius,
-    height: where on the gear (gear radius and z, m).
+    Attributes
+    ----------
+    roll, y : (n_profile, n_width) arrays
+        Roll angle, rad, and position along the pinion's axis, m, of each point.
+    gap : (n_profile, n_width) array
+        Smallest distance, m, from the gear's flank while the tooth passes through the mesh; 0 where the point
+        does not meet the flank.
+    is_facing : (n_profile, n_width) mask
+        Whether the point meets the gear's flank at all.
+    radius, height : (n_profile, n_width) arrays
+        Radius and z on the gear where the gap is smallest, m; 0 where the point does not meet the flank.
     """
 
     roll: Array
     y: Array
     gap: Array
-    facing: Mask
+    is_facing: Mask
     radius: Array
     height: Array
 
@@ -81,7 +89,7 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
         roll=roll,
         y=y,
         gap=facing_values(min_gap),
-        facing=is_facing.reshape(shape),
+        is_facing=is_facing.reshape(shape),
         radius=facing_values(radius),
         height=facing_values(hit[:, 2]),
     )
@@ -139,6 +147,7 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
 
 
 def _contact(contact: UnloadedContact) -> dict[str, Any]:
+    """Return the record of an unloaded contact: angles, transmission error and path."""
     roll, y = contact.path
     error = 1e6 * contact.transmission_error
     return {
@@ -152,6 +161,7 @@ def _contact(contact: UnloadedContact) -> dict[str, Any]:
 
 
 def _gap(gap: Gap) -> dict[str, Any]:
+    """Return the record of a gap: its size and where on both bodies."""
     return {
         "gap_um": 1e6 * gap.gap,
         "along_line_of_action_um": 1e6 * gap.approach if np.isfinite(gap.approach) else None,
@@ -219,7 +229,7 @@ def contact_arrays(design: PairDesign, analysis: PairAnalysis, contours: EaseOff
     """
     roll, y = analysis.drive.path
     order = np.argsort(roll)
-    record = {f"contour_{name}": value for name, value in asdict(contours).items()}
+    record = {f"contour_{name.removeprefix('is_')}": value for name, value in asdict(contours).items()}
     return {
         **record,
         "path_roll": roll[order],

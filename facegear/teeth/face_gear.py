@@ -22,6 +22,7 @@ from facegear.teeth import closed_forms
 from facegear.teeth.design import PairDesign, as_cut
 
 ROUNDING = 16 * np.finfo(float).eps
+"""Residual over the size of its terms that counts as zero: a few roundings of a double."""
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
@@ -109,15 +110,18 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
 
 
 def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
+    """Return point and derivatives of the generated flank at roll angle and psi."""
     return closed_forms.flank_frame(*shaper_numbers(design), *_together(roll, psi))
 
 
 def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
+    """Return two arrays at their common shape."""
     arrays = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
     return arrays[0], arrays[1]
 
 
 def _stack_components(x: Array, y: Array, z: Array) -> Array:
+    """Return vectors (..., 3) of their components."""
     return np.stack([x, y, z], axis=-1)
 
 
@@ -247,6 +251,7 @@ def tip_edge_by_radius(design: PairDesign) -> TipEdge:
 
 @lru_cache(maxsize=16)
 def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
+    """Return the tip edge of the flank as a function of the radius, tabulated once for each design."""
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
     roll, psi = roll_and_psi_at_height(design, radius, design.gear_tip_plane)

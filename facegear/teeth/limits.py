@@ -107,12 +107,13 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
 
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:
+    """Return the error of a design whose face has no width."""
     tip = round(design.face_gear.addendum / design.module, 6)
     return GeometryError("face_gear.addendum_modules", tip, f"less: {reason}")
 
 
 def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float, float] | None:
-    """Smallest and largest radius (m) at which the tip land is wide enough; None where it is at no radius.
+    """Return the smallest and largest radius (m) at which the tip land is wide enough; None if there is none.
 
     The land has one maximum: with many pinion teeth it also vanishes near the radius of tip undercut.
     """
@@ -136,7 +137,7 @@ def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float
 
 
 def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
-    """The largest radius (m) with room left; room falls outwards."""
+    """Return the largest radius, m, at which a margin that falls outwards is still positive."""
     low, high = low * (1 + 1e-9), high * (1 - 1e-6)
     if high <= low or margin(design, low) <= 0:
         return low
@@ -146,7 +147,7 @@ def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low:
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
-    """Width (m) of the tip land beyond the thinnest."""
+    """Return the width (m) of the tip land beyond the thinnest allowed."""
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
 
@@ -171,7 +172,9 @@ def sharpest_fillet_radius(design: PairDesign) -> float:
 
 
 def _fillet_left(design: PairDesign, radius: float) -> float:
-    """Length (m) of the fillet beyond the shortest: the way of the rounding's centre, and its arc."""
+    """Return the length (m) of the fillet beyond the shortest allowed: the way of the rounding's centre, and
+    its arc.
+    """
     psi = float(face_gear_fillet.fillet_start(design, radius))
     way = abs(psi - atan(design.shaper_rounding_roll)) * design.shaper_rounding_centre
     return way + (pi / 2 - psi) * design.shaper.tip_rounding - THINNEST_LAND * design.module
@@ -226,6 +229,7 @@ def tip_plane_radius(design: PairDesign) -> float:
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
+    """Return the radii, m, at which the tip of the tooth becomes pointed."""
     base, ratio, space = design.shaper_base_radius, design.shaper_ratio, design.shaper_half_space_angle
     height = (design.shaper_lift - design.gear_tip_plane) / base
 
@@ -250,7 +254,10 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
 
 
 def _root_near(function: Callable[[float], float], guess: float) -> float:
-    """The planar and the exact limit differ by some 0.03 %: a bracket that grows around the planar one."""
+    """Return the root of a function near a guess.
+
+    The guess is the planar limit, from which the exact one differs by some 0.03 %: a bracket grows around it.
+    """
     width = 1e-3
     while width < 1.0:
         low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)

@@ -17,22 +17,31 @@ from facegear.teeth.mesh_quality import scaled_jacobians, volume
 from facegear.teeth.tooth_mesh import SectorMesh
 
 _CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+"""Places of the corners of a 27-node element, in half edges along its axes."""
 _RING = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)]
+"""Places of the nodes on lower and upper edges."""
 _UPRIGHT = [(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
+"""Places of the nodes on upright edges."""
 _GMSH_EDGES = [
     *[(1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 1, 0), (2, 0, 1), (1, 2, 0)],
     *[(2, 2, 1), (0, 2, 1), (1, 0, 2), (0, 1, 2), (2, 1, 2), (1, 2, 2)],
 ]
+"""Places of the nodes on edges in gmsh's order."""
 _GMSH_FACES = [(1, 1, 0), (1, 0, 1), (0, 1, 1), (2, 1, 1), (1, 2, 1), (1, 1, 2)]
+"""Places of the nodes on faces in gmsh's order."""
 _VTK_FACES = [(0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2)]
+"""Places of the nodes on faces in VTK's order."""
 
 
 def _index(positions: list[tuple[int, int, int]]) -> np.ndarray:
+    """Return the numbers of nodes in a 27-node element by their places along its three axes."""
     return np.array([i + 3 * j + 9 * k for i, j, k in positions])
 
 
 GMSH27 = _index([*_CORNERS, *_GMSH_EDGES, *_GMSH_FACES, (1, 1, 1)])
+"""Number of each of gmsh's 27 nodes in this package's order."""
 VTK27 = _index([*_CORNERS, *_RING, *_UPRIGHT, *_VTK_FACES, (1, 1, 1)])
+"""Number of each of VTK's 27 nodes in this package's order."""
 SERENDIPITY20 = _index([*_CORNERS, *_RING, *_UPRIGHT])
 """The 20 nodes of VTK's quadratic hexahedron and of C3D20 in Abaqus and CalculiX."""
 QUAD9 = np.array([0, 2, 8, 6, 1, 5, 7, 3, 4])
@@ -78,6 +87,7 @@ def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
 
 
 HEXAHEDRON_27, QUADRANGLE_9 = 12, 10
+"""Numbers of gmsh's types of elements."""
 
 
 @contextmanager
@@ -99,6 +109,7 @@ def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
 
 
 def _fill(sector: SectorMesh) -> NDArray[np.uint64]:
+    """Give nodes, elements and surfaces of a sector to gmsh, and return their numbers."""
     names = [name for name in sector.tooth.faces if len(sector.faces(name))]
     for number in range(1, len(names) + 1):
         gmsh.model.addDiscreteEntity(2, number)
@@ -139,6 +150,7 @@ def write_msh(sector: SectorMesh, path: Path) -> Array:
 
 
 QUANTILES = (0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
+"""Quantiles of the mesh quality that a report lists."""
 
 
 def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataFrame:

@@ -40,6 +40,7 @@ def hex_mesh(nodes: Array, hexes: Integers) -> tuple[MeshHex2, Integers]:
 
 
 ELEMENTS_AT_ONCE = 2000
+"""Number of elements judged together, which bounds memory; results do not depend on it."""
 DEGREE = 5
 """Degree of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each
 way."""
@@ -123,5 +124,6 @@ def volume(nodes: Array, hexes: Integers) -> float:
 
 
 def _batches(mesh: MeshHex2) -> Iterator[Integers]:
+    """Yield the numbers of elements in batches of ELEMENTS_AT_ONCE."""
     for start in range(0, mesh.nelements, ELEMENTS_AT_ONCE):
         yield np.arange(start, min(start + ELEMENTS_AT_ONCE, mesh.nelements))

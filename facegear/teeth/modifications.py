@@ -1,4 +1,11 @@
-"""Modifications and measured deviations of flanks."""
+"""Modifications and measured deviations of flanks.
+
+Modifications and deviations of the face gear's flanks: material taken off along the normal, and the gap that
+this opens. Everything is for the flank that meets the pinion's right one: the left flank of tooth 0 in a
+mirror, where it stands as the right one does in the gear body frame (see `design`). A place on the flank is
+its gear radius and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the
+fillet, the amount at the edge stands.
+"""
 
 from functools import lru_cache
 
@@ -18,6 +25,7 @@ from facegear.teeth.design import (
 )
 
 CUBIC = 3
+"""Degree of the spline through deviations, where there are enough lines for it."""
 
 
 def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:
@@ -104,11 +112,13 @@ def mean_crowning(grid: DeviationGrid | None) -> float:
 
 
 def _ends(line: tuple[float, ...]) -> tuple[float, float]:
+    """Return the first and the last value."""
     return line[0], line[-1]
 
 
 @lru_cache(maxsize=512)
 def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
+    """Return the spline through the deviations of a grid, m."""
     lines = [np.array(line) for line in (grid.face, grid.profile)]
     orders = [min(CUBIC, line.size - 1) for line in lines]
     values = np.array(grid.deviation)
@@ -268,8 +278,8 @@ def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute points of the fillet, see `face_gear.fillet_section`, less the material taken off at the end of
-    the flank.
+    """Compute points of the fillet, see `face_gear_fillet.fillet_section`, less the material taken off at the
+    end of the flank.
 
     Parameters
     ----------

@@ -15,6 +15,7 @@ from facegear.teeth.separation import Separation
 from facegear.teeth.surfaces import fillet_points
 
 FILLET_SAMPLES = 2000
+"""Number of points of the fillet's curve between which it is interpolated."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,11 @@
-"""Placement of the pinion against the gear: rotations, tooth numbers and assembly errors of each flank."""
+"""Placement of the pinion against the gear: rotations, tooth numbers and assembly errors of each flank.
+
+The pair that each flank of each face gear is part of: its assembly errors, of a pinion displaced as the
+config says, and its deviations. The errors of a design are those that the upper gear's drive flank meets. The
+lower gear sees the same pinion turned half round its axis: its offset and its tilt change sign, while a shift
+of a gear leads away from the pinion on either side. The back flank is the drive flank of the pair in a
+mirror, whose offset changes sign; what drives, turned half round, is the pinion's right flank again.
+"""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -281,7 +288,9 @@ def to_pinion_section(design: PairDesign, phi1: Array, phi2: Array, teeth: Array
 
 
 GEARS = ("upper", "lower")
+"""Face gears of a machine."""
 FLANKS = ("drive", "back")
+"""Flanks of a mesh."""
 
 
 def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:

@@ -1,4 +1,8 @@
-"""The face gear's numbers and a sample of its flank, as the kernel of rays takes them."""
+"""The face gear's numbers and a sample of its flank, as the kernel of rays takes them.
+
+Rays cut with a tooth of the face gear: the first of its surfaces that is hit. All angles in rad, all lengths
+in m, for the right side of tooth 0 in the gear's body frame.
+"""
 
 from functools import lru_cache
 from math import pi
@@ -41,7 +45,7 @@ class Blank(NamedTuple):
 
 
 def blank(design: PairDesign) -> Blank:
-    """Return the numbers of a design's face gear.
+    """Return the numbers of a design's face gear that limit its flank: radii, planes and edges.
 
     Parameters
     ----------
@@ -113,10 +117,12 @@ def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
 
 @lru_cache(maxsize=16)
 def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
+    """Return blank and sampled flank of a design's generated teeth; kept for each design."""
     return blank(design), _flank_sample(design)
 
 
 def _flank_sample(design: PairDesign) -> FlankSample:
+    """Sample the flank on a grid from which searches along rays begin."""
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
@@ -138,12 +144,13 @@ def _flank_sample(design: PairDesign) -> FlankSample:
 
 
 NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
+"""Part of the face gear that a ray meets first."""
 
 
 def cut(
     blank: Blank, sample: FlankSample, starts: Array, ways: Array, search_radius: float
 ) -> tuple[list[AnyArray], int]:
-    """Cut rays with the gear by Newton's method.
+    """Find where rays meet the face gear by Newton's method.
 
     Parameters
     ----------

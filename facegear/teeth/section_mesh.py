@@ -1,4 +1,10 @@
-"""Topology and nodes of a tooth section: quads that coarsen three to one away from the flank."""
+"""Topology and nodes of a tooth section: quads that coarsen three to one away from the flank.
+
+The half section is a strip along its outer boundary (tip corner, flank, fillet, root land) and a block below.
+Coordinates: sigma runs along the boundary in units of coarse columns, t goes inwards, 0 at the surface and 1
+on the centre line and on the floor of the strip; from 1 to 2 it crosses the block below, whose columns go on
+from those of the floor.
+"""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -105,6 +111,7 @@ def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
 
 
 def _coarsening_depth(profile: float, levels: int) -> float:
+    """Return the depth, m, that coarsening three to one over some levels takes."""
     return sum(2.5 * profile * 3.0**step for step in range(levels))
 
 
@@ -143,11 +150,17 @@ def half_section(
 
 
 def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
+    """Return the corners (4, 2) of a rectangle in local coordinates."""
     return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
 
 
 def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[Array]:
-    """Corners (4, 2) ordered (0,0), (1,0), (0,1), (1,1) in local (sigma, t)."""
+    """Return the corners of one row's quadrilaterals in a column of the section mesh.
+
+    They are (4, 2) arrays in local coordinates (sigma, t), ordered (0,0), (1,0), (0,1), (1,1) in each
+    quadrilateral. There are 3**level of them across the column; in an `active` column a row that coarsens
+    joins three to one.
+    """
     divisions = 3**level
     if not (row.coarsens and active):
         edges = column + np.arange(divisions + 1) / divisions
@@ -166,6 +179,7 @@ def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[A
 
 
 def _nine_nodes(corners: Array, columns: tuple[int, int]) -> HalfSection:
+    """Return nine-node quadrilaterals of corner points, with shared nodes merged."""
     c00, c10, c01, c11 = (corners[:, i] for i in range(4))
     nine = np.stack(
         [
@@ -194,6 +208,7 @@ GROWTH = 2.0
 SHARP = 0.6
 """Deepest first row below a fillet in its smallest radius."""
 ROUNDING = 1e-9
+"""Part of a column by which a coordinate may be off by rounding, dimensionless."""
 
 
 @dataclass(frozen=True)
@@ -300,11 +315,13 @@ def _fillet_rows(rows: Array, first: float) -> Array:
 
 
 def _floor_height(outline: Outline) -> float:
+    """Return the height at which the mesh below the root becomes plain, m."""
     below = outline.root_height - outline.back_height
     return outline.root_height - min(0.6 * outline.design.module, 0.5 * below)
 
 
 def _length(outline: Outline, segment: str, scale: float) -> float:
+    """Return the largest length of an outline's segment over the sections, m."""
     angle, height = outline.points(segment, np.linspace(0, 1, 65))
     return float(np.max(np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0)).sum(axis=0)))
 
@@ -339,6 +356,7 @@ def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[Mask, 
 
 
 def _nearest(values: Array, value: float) -> float:
+    """Return the value that is nearest to a given one."""
     return float(values[np.argmin(np.abs(values - value))])
 
 

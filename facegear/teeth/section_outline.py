@@ -28,23 +28,28 @@ class Outline:
 
     @property
     def half_pitch(self) -> float:
+        """Half of the angular pitch of the body, rad."""
         teeth = self.design.pinion.teeth if self.body == "pinion" else self.design.face_gear.teeth
         return pi / teeth
 
     @property
     def tip_height(self) -> float:
+        """Tip radius of the pinion, or height of the gear's tip plane, m."""
         return self.design.pinion_tip_radius if self.body == "pinion" else self.design.gear_tip_plane
 
     @property
     def root_height(self) -> float:
+        """Root radius of the pinion, or height of the gear's root plane, m."""
         return self.design.pinion_root_radius if self.body == "pinion" else self.design.gear_root_plane
 
     @property
     def back_height(self) -> float:
+        """Bore radius of the pinion, or height of the gear's back plane, m."""
         return self.design.pinion.bore_radius if self.body == "pinion" else self.design.gear_back_plane
 
     @property
     def has_chamfer(self) -> bool:
+        """Whether the tip of the tooth has a chamfer."""
         return self.body == "pinion" and self.design.pinion.tip_chamfer > 0
 
     def flank_parameters(self, fraction: Array) -> tuple[Array, Array]:
@@ -141,6 +146,7 @@ class Outline:
         return tip + fraction * (angle - tip), self.tip_height + fraction * (height - self.tip_height)
 
     def _flank(self, fraction: Array) -> tuple[Array, Array]:
+        """Return angle, rad, and height, m, of flank points at fractions of the profile."""
         u, v = self.flank_parameters(fraction)
         if self.body == "pinion":
             radius, angle = pinion.involute_point(self.design, u)
@@ -169,12 +175,13 @@ class Outline:
 
 
 def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
-    """Both arrays at the shape of their product."""
+    """Return both arrays at their common broadcast shape."""
     u, v = np.broadcast_arrays(u, v)
     return u, v
 
 
 PLANES, POINTS = 8, 129
+"""Numbers of Gauss points along the face and of points along the profile by which a tooth is integrated."""
 
 
 def tooth_fill(design: PairDesign) -> tuple[float, float]:

@@ -28,6 +28,7 @@ PARTS = ("none", "flank", "fillet", "tip land", "root land")
 __all__ = ["PARTS", "Separation", "separation", "separation_each"]
 
 RAYS_AT_ONCE = 60_000
+"""Number of rays searched together, which bounds memory; results do not depend on it."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,7 @@ class GearSide:
         return cls(design, *gear_rays(design), as_generated(design))
 
     def cut(self, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
-        """Cut rays in the frame of the gear's flank.
+        """Find where rays, in the frame of the gear's flank, meet the gear.
 
         Parameters
         ----------

@@ -70,7 +70,9 @@ def solid(
 
 
 def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
-    """The right half of a tooth, and the left half in a mirror, which the pair's right flank meets."""
+    """Return the right half of a tooth, and the mirrored left half, which the mirrored pair's right flank
+    touches.
+    """
     if body == "pinion":
         return _pinion_half(design, profile, width), _pinion_half(design.with_swapped_flanks, profile, width)
     return _gear_half(design.with_swapped_flanks, profile, width), _gear_half(design, profile, width)
@@ -147,7 +149,7 @@ def mirror_patch(patch: Array) -> Array:
 
 
 def _sides(half: HalfTooth) -> list[Array]:
-    """Surface, base and both ends of half a tooth, normals outwards."""
+    """Return the patches of half a tooth: surface, base and both ends, normals outwards."""
     patches = []
     for surface, base in zip(half.surface, half.base, strict=True):
         first, last = (np.stack([surface[:, k], base[:, k]], axis=1) for k in (0, -1))
@@ -156,12 +158,13 @@ def _sides(half: HalfTooth) -> list[Array]:
 
 
 def _cut(half: HalfTooth) -> Array:
-    """The plane through the middle of the space on the right, normal outwards."""
+    """Return the plane through the middle of the tooth space on the right, normal outwards."""
     cut = np.stack([half.surface[-1][-1], half.base[-1][-1]], axis=1)
     return cut[::-1] if half.normal_sign > 0 else cut
 
 
 def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    """Return the patches of half a pinion tooth: flank, fillet, lands and bore."""
     part, few = design.pinion, (profile - 1) // 4 + 1
     y = np.linspace(design.mean_radius - part.width / 2, design.mean_radius + part.width / 2, width)[None, :]
     bounds = _roll_bounds(design)
@@ -184,7 +187,7 @@ def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
 
 
 def _roll_bounds(design: PairDesign) -> list[float]:
-    """Roll angles (rad) from tip to fillet between which the flank is smooth."""
+    """Return the roll angles (rad), from tip to fillet, between which the flank is smooth."""
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
 
     def kinks(relief: Relief) -> list[float]:
@@ -197,11 +200,12 @@ def _roll_bounds(design: PairDesign) -> list[float]:
 
 
 def _polar(points: Array) -> tuple[Array, Array]:
+    """Return radius, m, and angle, rad, of points about the pinion's axis."""
     return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
 
 
 def _arc(start: Array, end: Array, count: int) -> Array:
-    """From polar angles `start` (n,) to points (n, 3) on their circles."""
+    """Return points (count, n, 3) on circles from polar angles `start` (n,) to the points `end` (n, 3)."""
     radius, angle = _polar(end)
     fraction = np.linspace(0.0, 1.0, count)[:, None]
     points = pinion.cartesian(radius, start + fraction * (angle - start), end[:, 1])
@@ -210,6 +214,7 @@ def _arc(start: Array, end: Array, count: int) -> Array:
 
 
 def _between(start: Array, end: Array, count: int) -> Array:
+    """Return grids of points on straight lines from `start` to `end`."""
     fraction = np.linspace(0.0, 1.0, count)[:, None, None]
     points = start + fraction * (end - start)
     points[-1] = end
@@ -217,11 +222,13 @@ def _between(start: Array, end: Array, count: int) -> Array:
 
 
 def _onto_bore(points: Array, bore: float) -> Array:
+    """Project points onto the pinion's bore."""
     _, angle = _polar(points)
     return pinion.cartesian(bore, angle, points[..., 1])
 
 
 def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    """Return the patches of half a gear tooth: flank, fillet, lands and back."""
     gear, few = design.face_gear, (profile - 1) // 4 + 1
     radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
     fraction = np.linspace(0.0, 1.0, profile)[:, None]

@@ -30,7 +30,7 @@ class SurfacePoints:
         return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
 
     def only(self, index: Integers | slice) -> "SurfacePoints":
-        """Return the points at `index`.
+        """Return the points, with normals, at some indices.
 
         Parameters
         ----------
@@ -103,6 +103,7 @@ def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> Surface
 
 
 def _together(x: Array, y: Array | float, z: Array) -> Array:
+    """Return vectors (..., 3) of their components."""
     vectors = np.empty((*x.shape, 3))
     vectors[..., 0], vectors[..., 1], vectors[..., 2] = x, y, z
     return vectors

@@ -30,7 +30,7 @@ class SurfaceGrid:
 
 @dataclass(frozen=True)
 class FeTooth:
-    """Tooth 0 with its share of the body, from cut face to cut face, in the body frame of `geometry.design`.
+    """Tooth 0 with its share of the body, from cut face to cut face, in the frame of `facegear.teeth.design`.
 
     Attributes
     ----------
@@ -64,14 +64,14 @@ class FeTooth:
         return 2 * pi / self.teeth
 
     def rotated(self, points: Array, angle: float) -> Array:
-        """Rotate points or vectors about the body's axis.
+        """Rotate points or vectors about the body's axis by an angle.
 
         Parameters
         ----------
         points : (..., 3) array
             m, or any unit.
         angle : float
-            rad, positive as in `geometry.design`.
+            rad, positive as in `facegear.teeth.design`.
 
         Returns
         -------
@@ -123,6 +123,7 @@ def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
 
 
 def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: float) -> FeTooth:
+    """Build the finite elements of one tooth between two ends along its width."""
     layers = max(2, round((end - start) / sizes.width))
     outline = Outline(design, body, np.linspace(start, end, 2 * layers + 1))
     plan = plan_section(outline, sizes)
@@ -168,15 +169,18 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
 
 
 def _transpose_grid(quads: Integers) -> Integers:
+    """Exchange the two local axes of nine-node quadrilaterals."""
     return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
 
 
 def _extruded(quads: Integers, layers: int, count: int) -> Integers:
+    """Return 27-node elements from nine-node quadrilaterals over layers along the width."""
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (quads[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 27)
 
 
 def _extruded_edges(edges: Integers, layers: int, count: int) -> Integers:
+    """Return nine-node quadrilaterals from three-node edges over layers along the width."""
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (edges[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 9)
 
@@ -220,6 +224,7 @@ def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, 
 def _surfaces(
     outline: Outline, plan: SectionPlan, mirror: Integers, planes: Integers
 ) -> dict[str, SurfaceGrid]:
+    """Return the grids of nodes on flank and fillet with their parameters."""
     half = plan.half
     surface = np.flatnonzero(half.t == 0)
     surface = surface[np.argsort(half.sigma[surface])]

@@ -39,9 +39,9 @@ def figures_of(claim: Claim) -> tuple[int, ...]:
     """
     if claim.id in CONCLUSIONS:
         return CONCLUSIONS[claim.id]
-    if claim.where in PARTS:
-        return PARTS[claim.where]
-    if claim.where == "figures 10 and 11":
+    if claim.location in PARTS:
+        return PARTS[claim.location]
+    if claim.location == "figures 10 and 11":
         return _of_sweep(claim)
     if claim.criterion == "mesh_period":
         return (9,)

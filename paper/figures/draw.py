@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from facegear.report.figures.campbell import CLASS_COLOURS
 from facegear.report.figures.colours import BLUE, COLOURS, RED, grey
 from facegear.report.figures.description import NARROW, Axis, Figure, Key, Panel
 from facegear.report.figures.marks import Bars, Curve, Line, Look
-from facegear.report.figures.motion import AXIS_STYLES, CLASS_COLOURS, DIRECTION_STYLES, SIDE_STYLES, select
+from facegear.report.figures.motion import AXIS_STYLES, DIRECTION_STYLES, SIDE_STYLES, select
 from paper.figures.claims_of import STUDIES
 from paper.scorecard.claims import Claim
 from paper.scorecard.criteria_sharing import MAX_UNDEFINED

@@ -16,24 +16,25 @@ class Claim(Section):
     """One row of the scorecard.
 
     A claim with `paper` is a number that holds within `tolerance`; one without is a statement, which the
-    criterion decides. `undisclosed` names inputs the paper leaves out that the row hangs on, `fitted` marks
-    rows that the identification used, `reason` says why ours may differ. `same_as` names a row that gives the
-    same number once more: totals count it once. `about: other studies` marks a remark on models that are not
-    this one; it is judged, but apart from all totals.
+    criterion decides. `location` names the figure, table or text of the paper. `undisclosed_inputs` names the
+    inputs that the paper leaves out and that the row depends on, `is_fitted` marks rows that the
+    identification used, `reason` says why our value may differ. `same_as` names a row that gives the same
+    number once more: totals count it once. `about: other studies` marks a remark on models that are not this
+    one; it is judged, but apart from all totals.
     """
 
     id: str = Field(pattern=r"^[a-z0-9_]+$")
-    where: str
+    location: str
     claim: str
     criterion: str
     args: dict[str, Any] = Field(default_factory=dict)
     paper: float | None = None
     unit: str = ""
     tolerance: float | None = Field(None, ge=0)
-    fitted: bool = False
+    is_fitted: bool = False
     same_as: str | None = None
     about: Literal["this model", "other studies"] = "this model"
-    undisclosed: tuple[str, ...] = ()
+    undisclosed_inputs: tuple[str, ...] = ()
     reason: str = ""
 
     @model_validator(mode="after")
@@ -50,7 +51,7 @@ class Claim(Section):
     @property
     def dynamic(self) -> bool:
         """Whether the row is about this model and hangs on undisclosed inputs of its dynamics."""
-        hangs = TORQUE in self.undisclosed and GEAR_DATA not in self.undisclosed
+        hangs = TORQUE in self.undisclosed_inputs and GEAR_DATA not in self.undisclosed_inputs
         return hangs and self.about == "this model"
 
 

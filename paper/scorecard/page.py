@@ -13,7 +13,7 @@ from paper.scorecard.rows import Verdict
 TEMPLATE = Path(__file__).with_name("scorecard.html.j2")
 DIGITS = 4
 """Number of significant digits on the page."""
-ORDER = (Verdict.DIFFERS, Verdict.UNDECIDED, Verdict.DEPENDS, Verdict.REPRODUCED)
+ORDER = (Verdict.DIFFERS, Verdict.INCONCLUSIVE, Verdict.DEPENDS, Verdict.REPRODUCED)
 """Verdicts in the order of the page: differences first."""
 
 

@@ -23,7 +23,7 @@ class Verdict(StrEnum):
     """Verdicts of a row."""
 
     REPRODUCED = "reproduced"
-    UNDECIDED = "undecided"
+    INCONCLUSIVE = "undecided"
     DIFFERS = "differs"
     DEPENDS = "depends on an undisclosed input"
 
@@ -120,7 +120,7 @@ def verdict(
         The verdict.
     """
     if split:
-        return Verdict.UNDECIDED
+        return Verdict.INCONCLUSIVE
     if holds:
         return Verdict.REPRODUCED
     return Verdict.DEPENDS if undisclosed_inputs and any(set_verdicts) else Verdict.DIFFERS
@@ -164,7 +164,7 @@ def _row(
     again = None if claim_runs is None or CONFIG_SET not in claim_runs.index else claim_runs.loc[CONFIG_SET]
     set_verdicts = [bool(entry.held == entry.runs) for entry in sets.itertuples()]
     note = _disagreement(bool(run["holds"]), str(run["windows"]), again)
-    row_verdict = verdict(note != "", bool(run["holds"]), set_verdicts, claim.undisclosed)
+    row_verdict = verdict(note != "", bool(run["holds"]), set_verdicts, claim.undisclosed_inputs)
     reason = note if note else "" if row_verdict is Verdict.REPRODUCED else claim.reason
     if row_verdict is not Verdict.REPRODUCED and not reason:
         raise FacegearError(
@@ -174,7 +174,7 @@ def _row(
     rate = rates.loc[claim.id] if claim.id in rates.index else None
     return {
         "id": claim.id,
-        "where": claim.where,
+        "where": claim.location,
         "claim": claim.claim,
         "criterion": describe(CRITERIA[claim.criterion], claim.args),
         "paper": claim.paper,
@@ -190,13 +190,13 @@ def _row(
         "verdict": row_verdict.value,
         "holds": bool(run["holds"]),
         "runs_holding": "" if again is None else f"{int(again['held'])} of {int(again['runs'])}",
-        "fitted": claim.fitted,
+        "fitted": claim.is_fitted,
         "counted": claim.counts,
         "dynamic": claim.dynamic,
         "sets_low": float(sets["low"].min()) if sets["low"].notna().any() else None,
         "sets_high": float(sets["high"].max()) if sets["high"].notna().any() else None,
         "sets_reproducing": f"{sum(set_verdicts)} of {len(set_verdicts)}" if set_verdicts else "",
-        "undisclosed": "; ".join(claim.undisclosed),
+        "undisclosed": "; ".join(claim.undisclosed_inputs),
         "reason": reason,
     }
 

@@ -8,7 +8,9 @@ from paper.scorecard.base_rates import base_rates, totals
 from paper.scorecard.claims import Claim
 
 CLAIMS = [
-    Claim(id=name, where="text", claim=name, criterion="lost_contact", same_as=same, fitted=name == "half")
+    Claim(
+        id=name, location="text", claim=name, criterion="lost_contact", same_as=same, is_fitted=name == "half"
+    )
     for name, same in (("always", None), ("never", None), ("half", None), ("again", "half"))
 ]
 

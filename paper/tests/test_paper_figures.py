@@ -181,7 +181,7 @@ def test_the_page_holds_every_claim_with_its_verdict_and_leads_to_the_other_inpu
             "unit": [claim.unit or np.nan for claim in CLAIMS.claims],
             "shown": "ours",
             "verdict": "differs",
-            "fitted": [claim.fitted for claim in CLAIMS.claims],
+            "fitted": [claim.is_fitted for claim in CLAIMS.claims],
             "counted": [claim.counts for claim in CLAIMS.claims],
             "random_share": 0.25,
         }

@@ -18,13 +18,13 @@ from paper.scorecard.starts import START_COLUMNS, start_table
 CLAIMS = Path(__file__).parents[2] / "config" / "claims" / "paper.yaml"
 NUMBER = Claim(
     id="period",
-    where="text",
+    location="text",
     claim="mesh period",
     criterion="frequency",
     args={"order": 2},
     paper=100.0,
     tolerance=1.0,
-    undisclosed=("torque per engine",),
+    undisclosed_inputs=("torque per engine",),
     reason="because",
 )
 
@@ -73,7 +73,7 @@ def test_number_that_another_set_reproduces_depends_on_the_undisclosed_input():
 
 
 def test_row_that_hangs_on_nothing_undisclosed_cannot_be_excused_by_it():
-    firm = NUMBER.model_copy(update={"undisclosed": ()})
+    firm = NUMBER.model_copy(update={"undisclosed_inputs": ()})
     assert judged(103.0, 100.0, claim=firm)["verdict"] == Verdict.DIFFERS
 
 
@@ -82,7 +82,7 @@ def test_row_whose_runs_differ_by_rounding_and_disagree_is_undecided(own, held):
     row = judged(
         own, stored=runs((CONFIG_SET, "period", 3, held, 99.0, 103.0), ("a", "period", 2, 2, 100.0, 100.0))
     )
-    assert row["verdict"] == Verdict.UNDECIDED
+    assert row["verdict"] == Verdict.INCONCLUSIVE
     assert f"{held} of 3 runs" in row["reason"]
     assert row["runs_holding"] == f"{held} of 3"
 
@@ -109,7 +109,7 @@ def test_number_that_agrees_in_a_part_of_the_windows_is_undecided(monkeypatch, w
     monkeypatch.setattr(rows, "CRITERIA", {"measured": measured})
     claim = NUMBER.model_copy(update={"criterion": "measured", "args": {}})
     table = scorecard([claim], outcome_table([claim], {}), runs(), NO_RATES)
-    assert (table["verdict"][0] == Verdict.UNDECIDED) == undecided
+    assert (table["verdict"][0] == Verdict.INCONCLUSIVE) == undecided
 
 
 def test_row_that_fails_unexplained_stops_the_scorecard():

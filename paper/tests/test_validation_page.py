@@ -241,7 +241,7 @@ def test_whether_the_set_is_found_is_reported_by_the_stored_null():
     """More held-out claims than the rule reaches for 95 % of the invented papers."""
     edge = table("null").set_index("paper").loc["invented", "held_out_high"]
     runs = pd.read_csv(STORED.runs).query("set == 'a'").set_index("id")
-    held_out = [one.id for one in CLAIMS if one.dynamic and one.counts and not one.fitted]
+    held_out = [one.id for one in CLAIMS if one.dynamic and one.counts and not one.is_fitted]
     judged = [
         name for name in held_out if name in table("kinematics")["id"].tolist()
     ]  # those without a sweep

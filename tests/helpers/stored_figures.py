@@ -9,9 +9,10 @@ from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.contour import ContourSet
 
 import facegear
+from facegear.door.outputs import whole_case
 from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.needs import resolved_needs, shared_sources
-from facegear.pipeline.reported import asked_for
+from facegear.pipeline.report_tables import asked_for
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
 from facegear.report.figures.draw_matplotlib import draw
@@ -32,7 +33,7 @@ def stored_figures(config, results):
     str, Figure
         Name and figure.
     """
-    case = facegear.load(config)._whole_case(None).chain.case
+    case = whole_case(facegear.load(config)).chain.case
     for stage in STAGES.values():
         if not (stage.figures and asked_for(stage.name, case) and stage.figures.figure_names(case)):
             continue

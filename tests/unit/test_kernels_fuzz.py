@@ -13,10 +13,10 @@ RECORDED = (
     "tests/unit/contact/test_contact_solver.py",
     "tests/unit/contact/test_contact_candidates.py",
     "--deselect=tests/unit/contact/test_contact_candidates.py::test_screening_by_coarse_probes_loses_no_hat",
-    "tests/unit/mesh_law/test_linear_law.py",
-    "tests/unit/dynamics/test_motion_kernels.py",
-    "tests/unit/dynamics/test_load_dependent_motion.py",
-    "tests/unit/dynamics/test_dynamics_convergence.py",
+    "tests/unit/meshing/test_linear_law.py",
+    "tests/unit/motion/test_motion_kernels.py",
+    "tests/unit/motion/test_load_dependent_motion.py",
+    "tests/unit/motion/test_dynamics_convergence.py",
 )
 CALLS = 150
 """Changed calls of each kernel; `python -m validation.kernels_fuzz` makes more of them."""

@@ -32,6 +32,25 @@ except MissingExtra as error:
     return done.stdout.strip()
 
 
+def test_a_machine_of_given_stiffness_is_answered_without_any_extra():
+    """Statics asked for finite elements once, as a module held stages of contact beside others."""
+    script = """
+import sys
+from facegear.errors import EXTRAS
+for library in set(EXTRAS) - {"pyarrow"}:  # pandas holds it in the process that is forked
+    sys.modules[library] = None
+import facegear
+gearbox = facegear.load("config/harmonics_only.yaml", None)
+for name in ("modes", "statics", "response", "load_sharing", "sensitivity", "hunting"):
+    getattr(gearbox, name)()
+pair = facegear.load("config/teeth_only.yaml", None)
+pair.geometry(), pair.topography()
+print("answered")
+"""
+    (done,) = run_together([script], {"PYTHONPATH": os.pathsep.join(sys.path)})
+    assert done.stdout.strip() == "answered", done.stderr
+
+
 @pytest.mark.parametrize("call", ["contact()", "load_sharing()"])
 def test_teeth_without_finite_elements_name_the_extra(call):
     line = 'skfem is not installed; get it with: pip install ".[fe]" (' + SOURCES

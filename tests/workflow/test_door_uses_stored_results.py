@@ -9,7 +9,7 @@ import pytest
 from projects import ROOT
 
 import facegear
-from facegear.pipeline.provenance import fingerprint
+from facegear.pipeline.results import store
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 ANSWERS = ("geometry", "contact", "stiffness", "modes", "response", "sweep", "load_sharing")
@@ -72,5 +72,5 @@ def test_a_damaged_file_is_computed_anew_with_a_warning(results):
 
 
 def test_results_of_other_code_are_computed_anew(quick, monkeypatch):
-    monkeypatch.setattr(fingerprint, "stage_fingerprint", lambda module, root: "0" * 16)
+    monkeypatch.setattr(store, "stage_fingerprint", lambda module, root: "0" * 16)
     assert facegear.load(CONFIG, quick.folder / "results").modes().source == "computed"

@@ -25,7 +25,7 @@ from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.tooth_mesh import FeTooth
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 from validation.contact.all_candidates import solve_candidates
 
 Blocks = dict[tuple[int, int], Array]

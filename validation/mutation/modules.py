@@ -35,11 +35,11 @@ MODULES = {
             "facegear/meshing/load_dependent.py",
             "facegear/meshing/force_table.py",
         ),
-        _tests("mesh_law", "linear_law", "load_dependent_law"),
+        _tests("meshing", "linear_law", "load_dependent_law"),
     ),
     "statics": Module(
         ("facegear/machine/statics.py",),
-        _tests("transmission", "statics", "statics_by_energy", "geometric_statics"),
+        _tests("machine", "statics", "statics_by_energy", "geometric_statics"),
     ),
     "geometry": Module(
         (
@@ -47,7 +47,7 @@ MODULES = {
             "facegear/teeth/face_gear.py",
             "facegear/teeth/pinion.py",
         ),
-        _tests("geometry", "face_gear", "limits", "pinion", "validate"),
+        _tests("teeth", "face_gear", "limits", "pinion", "validate"),
     ),
     "rating": Module(("facegear/strength/rating.py",), _tests("strength", "rating")),
 }

@@ -22,7 +22,7 @@ from facegear.machine.poses.surface import SURFACE_ARRAYS
 from facegear.pipeline.stages.poses import pose_surface, quantities
 from facegear.quantities import BODIES
 from facegear.teeth.design import AssemblyErrors
-from validation.poses.frozen import STEPS, frozen_reactions
+from validation.poses.frozen_reactions import STEPS, frozen_reactions
 
 FOLDER = Path(__file__).parent
 SURFACE, LOADED_CONTACT = FOLDER / "concentric_surface.npz", FOLDER / "loaded.csv"

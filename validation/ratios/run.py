@@ -22,8 +22,8 @@ BASELINE = "94c3f7f7"
 """Commit that ratios are measured against: the last one before hot loops moved from numba to C++."""
 TURNS = 3
 """Timed calls of each tree; the least time counts, as whatever else runs can only add to it."""
-SAME = 1e-9
-"""Change of a number, over the largest of its array, up to which it is the same."""
+EQUAL_CHANGE = 1e-9
+"""Change of a number, over the largest of its array, up to which it counts as equal."""
 WORKER = Path(__file__).with_name("worker.py")
 MOTION = ("motion", "class")
 """Ends of the names of arrays that hold classes of motion."""
@@ -57,9 +57,17 @@ class Job:
         self.process: subprocess.Popen[str] | None = None
 
     def call(self) -> dict[str, float]:
-        """Return `seconds` of a processor, `wall` seconds and memory_mb of one call.
+        """Run the job once.
 
-        Raises RuntimeError if the job cannot be run.
+        Returns
+        -------
+        dict
+            `seconds` of processor time, `wall` seconds and `memory_mb` of the call, s and MB.
+
+        Raises
+        ------
+        RuntimeError
+            If the job cannot be run.
         """
         begin = time.perf_counter()
         if self.process is None:
@@ -95,10 +103,29 @@ class Job:
 def ratio(
     name: str, point: Point, trees: Sequence[Tree], folder: Path, turns: int = TURNS
 ) -> dict[str, object]:
-    """Measure one row, COLUMNS: least time of `turns` calls in each tree, in turns, after one untimed.
+    """Measure one row of the table: least time of `turns` calls in each tree, alternately, after one untimed
+    call.
 
-    Each tree computes what the stage takes from other stages by itself, from the same config, and keeps it
-    in a folder of its own for the points after this one.
+    Each tree computes what the stage takes from other stages by itself, from the same config, and keeps it in
+    a folder of its own for the points after this one.
+
+    Parameters
+    ----------
+    name : str
+        Name of the point.
+    point : Point
+        The job and its unit of work.
+    trees : sequence of Tree
+        Earlier and present tree.
+    folder : Path
+        Folder for jobs, inputs and answers.
+    turns : int
+        Number of timed calls of each tree.
+
+    Returns
+    -------
+    dict
+        Value of each of COLUMNS.
     """
     job = folder / f"{name}.json"
     job.write_text(json.dumps(point.job), encoding="utf-8")
@@ -109,8 +136,8 @@ def ratio(
         for path, (side, tree) in zip(answers, sides, strict=True)
     ]
     calls = [[job.call() for job in jobs] for _ in range(turns + 1)][1:]
-    for each in jobs:
-        each.close()
+    for timed_job in jobs:
+        timed_job.close()
     memory = [max(turn[side]["memory_mb"] for turn in calls) for side in range(2)]
     before, now, *wall = (
         point.scale / point.amount * min(turn[side][clock] for turn in calls)
@@ -141,23 +168,33 @@ def read_answers(path: Path) -> dict[str, np.ndarray]:
 
 
 def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[float, float, int, int]:
-    """Return the largest change of a number over the largest of its array, the fraction of numbers that
-    change by at most SAME, how many labels changed, and how many there are.
+    """Compare the answers of two trees.
 
     Rows whose `motion` changes its class or its period, or is not periodic, count by their label alone, as
-    other motions are statistics. Residuals, and differences of like numbers, count as zero up to rounding.
-    An array that is missing now, or has another shape, is an infinite change.
+    other motions are statistics. Residuals, and differences of like numbers, count as zero up to rounding. An
+    array that is missing now, or has another shape, is an infinite change.
+
+    Parameters
+    ----------
+    before, now : dict of (...) arrays
+        Arrays of numbers and texts by name, in any unit.
+
+    Returns
+    -------
+    float, float, int, int
+        Largest change of a number relative to the largest of its array, fraction of numbers that change by at
+        most EQUAL_CHANGE, number of labels that changed, and number of labels.
     """
     texts = {name for name, values in before.items() if values.dtype.kind == "U"}
     labels = sum(before[name].size for name in texts)
     if any(name not in now or values.shape != now[name].shape for name, values in before.items()):
         return float("inf"), 0.0, labels, labels
-    changed = sum(int((before[name] != now[name]).sum()) for name in texts)
+    labels_changed = sum(int((before[name] != now[name]).sum()) for name in texts)
     gaps = [
         gap for name in before.keys() - texts if (gap := relative_change(before, now, name, texts)).size
     ] or [np.zeros(1)]
     together = np.concatenate(gaps)
-    return float(together.max()), float((together <= SAME).mean()), changed, labels
+    return float(together.max()), float((together <= EQUAL_CHANGE).mean()), labels_changed, labels
 
 
 def relative_change(
@@ -179,7 +216,7 @@ def relative_change(
     ndarray
         Changes (numbers,), dimensionless; of an array of zeros as they are.
     """
-    old, new = (_counted(name, side[name]) for side in (before, now))
+    old, new = (_comparable_numbers(name, side[name]) for side in (before, now))
     for label in texts:
         if label.endswith(MOTION) and name.startswith(label.removesuffix("motion").removesuffix("class")):
             regular = is_regular(before, now, label)
@@ -211,33 +248,39 @@ def is_regular(before: Mapping[str, np.ndarray], now: Mapping[str, np.ndarray], 
     return rows & (before[period] == now[period]) if period in before else rows
 
 
-def _counted(name: str, values: np.ndarray) -> np.ndarray:
-    """Numbers of an array as they are compared."""
+def _comparable_numbers(name: str, values: np.ndarray) -> np.ndarray:
+    """Return the numbers of an array with differences up to rounding set to zero."""
     numbers = np.atleast_1d(values).astype(complex)
     zero = (RESIDUALS | DIFFERENCES).get(name.rsplit("/", 1)[-1], 0.0)
     return np.where(np.abs(numbers) <= zero, 0.0, numbers)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the table, and write it where it is asked for."""
+    """Print the table, and write it where a file is given.
+
+    Parameters
+    ----------
+    arguments : sequence of str or None
+        Arguments of the command line; those of the process if None.
+    """
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("points", nargs="*", default=list(POINTS), help=", ".join(POINTS))
     parser.add_argument("--since", default=BASELINE, metavar="COMMIT", help=f"by default {BASELINE}")
     parser.add_argument("--turns", type=int, default=TURNS)
     parser.add_argument("--table", type=Path, help="csv to be written")
-    asked = parser.parse_args(arguments)
-    invalid = [name for name in asked.points if name not in POINTS]
+    options = parser.parse_args(arguments)
+    invalid = [name for name in options.points if name not in POINTS]
     if invalid:
         parser.error(f"unknown points {', '.join(invalid)}; allowed: {', '.join(POINTS)}")
     rows = []
     with ExitStack() as stack:
-        before = stack.enter_context(checked_out(asked.since))
+        before = stack.enter_context(checked_out(options.since))
         folder = Path(stack.enter_context(TemporaryDirectory()))
-        for name in asked.points:
-            rows.append(ratio(name, POINTS[name], (before, present()), folder, asked.turns))
+        for name in options.points:
+            rows.append(ratio(name, POINTS[name], (before, present()), folder, options.turns))
             print(pd.DataFrame(rows[-1:]).to_string(index=False, header=len(rows) == 1), flush=True)
-            if asked.table:
-                pd.DataFrame(rows).to_csv(asked.table, index=False)
+            if options.table:
+                pd.DataFrame(rows).to_csv(options.table, index=False)
 
 
 if __name__ == "__main__":

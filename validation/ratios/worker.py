@@ -19,6 +19,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from facegear.door.outputs import machine_of
+
 STEP_TOLERANCE = 1e-14
 """Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
 NEUTRAL = 1e-12
@@ -100,7 +102,7 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
     from facegear.motion.integrator.integrator import Integrator
     from facegear.motion.steady_state.simulate import build_model, static_start
 
-    model = build_model(gearbox._machine())
+    model = build_model(machine_of(gearbox))
     speed = gearbox.values["dynamics"]["speed_rpm"]
     frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
     integrator = Integrator(model.system, frequency, STEP_TOLERANCE)

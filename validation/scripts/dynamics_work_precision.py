@@ -3,6 +3,7 @@
 import pandas as pd
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.io import tables
 from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
 from facegear.pipeline.provenance.stage import stage
@@ -22,7 +23,7 @@ with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     machine = machine_inputs({**params.machine, "harmonics": harmonics}).build()
-    load_dependent = facegear.example()._machine()
+    load_dependent = machine_of(facegear.example())
     problems = [
         *machine_problems(machine, params.speed_rpm),
         oscillator_problem(),

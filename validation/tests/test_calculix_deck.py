@@ -9,7 +9,7 @@ from contact_bodies import STEEL, pair_design
 
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 from validation.contact.calculix import write_deck
 
 TURN = 1e-3

@@ -20,7 +20,7 @@ from validation.platforms import (
 )
 from validation.references import ROOT
 
-TEST = "tests/unit/geometry/test_limits.py::test_undercut_and_pointing_radii_match_the_table"
+TEST = "tests/unit/teeth/test_limits.py::test_undercut_and_pointing_radii_match_the_table"
 
 
 def test_a_number_that_moved_is_measured_by_the_largest_expected_value_and_by_its_tolerance():

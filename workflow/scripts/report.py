@@ -10,7 +10,7 @@ from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
 from facegear.lubrication.columns import LOCAL_ARRAYS
 from facegear.pipeline.provenance.stage import stage
-from facegear.pipeline.reported import table_name
+from facegear.pipeline.report_tables import table_name
 from facegear.report.case import case_report
 from facegear.report.machine import Base
 from facegear.report.viewers import body_view, pair_view

@@ -14,6 +14,7 @@ from facegear.sparse.matrices import cholesky, forward, inverse, plus_square, so
 APART = 3e-9
 """Stiffness between the ends of a chain, over the largest of it, whose square is rounding."""
 LEFT, RIGHT = 0, 1
+"""Ends of a chain of teeth, as first index of arrays."""
 
 
 def join_chains(first: Array, second: Array) -> Array:
@@ -87,12 +88,13 @@ def apart(stiffness: Array) -> bool:
 
 
 def _almost_apart(stiffness: Array) -> bool:
+    """Whether the coupling of the two ends of a chain is at most APART of its stiffness."""
     s = len(stiffness) // 2
     return bool(np.abs(stiffness[:s, s:]).max(initial=0.0) <= APART * np.abs(stiffness.diagonal()).max())
 
 
 def _ends(stiffness: Array) -> Array:
-    """Return the stiffness without the coupling between its ends."""
+    """Return the stiffness (2s, 2s) of a chain with the coupling between its two ends set to zero."""
     s = len(stiffness) // 2
     alone = np.zeros_like(stiffness)
     alone[:s, :s], alone[s:, s:] = stiffness[:s, :s], stiffness[s:, s:]
@@ -218,7 +220,7 @@ def plane_compliance(faces: Array, teeth: int) -> Array:
 
 
 def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Array:
-    """Stiffness (s, s) of a chain at its near end, the far one free or clamped."""
+    """Return the stiffness (s, s), N/m, of a chain at its near end, with the far end free or clamped."""
     if ends == "clamped":
         return stiffness[near, near]
     follow = solve_factored(cholesky(stiffness[far, far]), stiffness[far, near])

@@ -1,5 +1,10 @@
 """Static condensation (Guyan 1965) of one tooth onto its loaded nodes and the faces shared with its
 neighbours.
+
+Split of a body that is its own mirror image into two bodies of half the size. Displacements that are even
+across the middle plane do not mix with those that are odd. Either kind is known from the half before the
+plane, where it is held along the plane's normal or across it. An element that the plane crosses counts half
+and is not cut, so that both halves together are the whole to rounding.
 """
 
 from dataclasses import dataclass, field, replace
@@ -228,6 +233,7 @@ def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
 
 
 def _half(system: TiedSystem, sign: float) -> Half:
+    """Build the symmetric (sign 1) or antisymmetric (-1) half of a mirror-symmetric system."""
     behind, count = system.mirror, len(system.points)
     on_plane = behind == np.arange(count)
     before = on_plane | (system.points[:, 1] < system.points[behind, 1])

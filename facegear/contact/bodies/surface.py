@@ -6,6 +6,11 @@ hexahedra (`ElementQuad2`). The pressure is a sum of bilinear basis functions (h
 (`ElementQuad1` between nodes), so that the nodal loads, the mean gap and the mean displacement of a basis
 function follow from one matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along
 the width; node (i, j) has the number i nv + j.
+
+Strain gauges on a free surface: stress from the displacements of the surface alone. Where nothing touches,
+the surface is in plane stress, and its stress follows from the displacement's derivatives along it. They are
+taken at the 2 x 2 Gauss points of each facet, where derivatives of quadratic elements converge one order
+faster than elsewhere.
 """
 
 from dataclasses import dataclass
@@ -203,11 +208,13 @@ def _by_point(basis: Basis) -> tuple[Integers, Array]:
 
 
 def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
+    """Build a sparse matrix with a row of weights for each point on its element's nodes."""
     pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
     return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))
 
 
 GAUSS = 1.0 / np.sqrt(3.0)
+"""Coordinate of the points of the two-point Gauss rule on [-1, 1], dimensionless."""
 
 
 @dataclass(frozen=True, eq=False)

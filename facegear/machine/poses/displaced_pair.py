@@ -1,4 +1,11 @@
-"""Exact pose and unloaded contact of a pair whose two bodies stand displaced."""
+"""Exact pose and unloaded contact of a pair whose two bodies stand displaced.
+
+Unloaded contact of a pair with displaced bodies: where its flanks meet, and how far they close. The pinion's
+displacement is given in the machine's frame at the pinion: x along the tangent as the upper gear's teeth
+move, y along the gears' axis towards the upper gear, z outwards along the pinion. The gear's displacement is
+given in the frame of the gears: x towards azimuth 0, y a quarter turn further, z from the lower to the upper
+gear.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -9,7 +16,7 @@ from facegear.arrays import Array
 from facegear.teeth.conjugate import PairNumbers, exact_contact
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import FLANKS, RigidMotion, errors_at, mirror_design, pinion_angle, rotation
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 
 @dataclass(frozen=True)
@@ -71,6 +78,7 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
 
 
 def _about_z(angle: float) -> Array:
+    """Return the matrix (3, 3) of a rotation about z by an angle, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -228,7 +236,7 @@ class DisplacedFlank:
 
     @property
     def closure(self) -> float:
-        """The part of `approach` beyond the first order."""
+        """Approach of the flanks beyond its linear part in the displacements, m."""
         return self.approach - self.deflection
 
 

@@ -1,4 +1,21 @@
-"""Flanks of all meshes at a pose: energy, force, law and reactions."""
+"""Flanks of all meshes at a pose: energy, force, law and reactions.
+
+The energy of a mesh in contact over its pose: force, law and reactions come from one function. Averaged over
+a mesh cycle, a mesh that is pressed in by x with its unloaded contact at y and an error g of the shaft angle
+stores
+
+    U(x, y, g) = max over F of [x F - G(F, y, g)],   G(F, y, g) = integral of F' / k(F', y, g) from 0 to F,
+
+k the average stiffness of the surface. Then F = U_x, U_y = -G_y and U_g = -G_g, the latter at constant F.
+With x = x(q) + closing(q), the exact unloaded contact gives the derivatives of x, y and g by all motions q of
+the bodies, so that the reactions are -F x_q + G_y y_q + G_g g_q: the load moves the middle of the contact
+away from y and turns the force. Below the smallest torque of the surface k goes on as the power of the load
+that it has there, as in the contact of single points.
+
+Flanks of all meshes at a pose: their unloaded contacts, by what these close them, and the energy's slopes.
+Flanks are numbered with all drive flanks first, then all back flanks. What deflections hold of an assembly
+error to first order is `ideal_slopes`; the rest is counted here.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -360,4 +377,5 @@ def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: boo
 
 
 def _three(errors: AssemblyErrors) -> Array:
+    """Return offset, m, axial shift, m, and shaft angle error, rad, as an array (3,)."""
     return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])

@@ -156,7 +156,9 @@ class PoseSurface:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """Arrays of the surface, as SURFACE_ARRAYS."""
+        """Surface as named arrays that `of_arrays` reads again, with the shapes of SURFACE_ARRAYS, in SI
+        units.
+        """
         errors = self.nominal
         return {
             "pair": self.pair.array,
@@ -322,16 +324,19 @@ class PoseSurface:
         }
 
     def _logs(self, quantity: str) -> Array:
+        """Return the values that are interpolated: logarithms but for radii."""
         values = self.values[quantity]
         return values if quantity == RADIUS else np.log(values)
 
     @cached_property
     def _torque_spline(self) -> "scipy.interpolate.CubicSpline":
+        """Cubic spline of unit values over the logarithm of the torque."""
         torques = self.nodes.torques
         return scipy.interpolate.CubicSpline(np.log(torques), np.eye(torques.size))
 
     @cached_property
     def _splines(self) -> dict[str, "scipy.interpolate.CubicSpline"]:
+        """Cubic splines of each quantity over the unloaded path."""
         return {
             name: scipy.interpolate.CubicSpline(self.nodes.paths, self._logs(name), axis=1)
             for name in self.values

@@ -130,7 +130,7 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
 
 
 def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
-    """Return the REACTIONS of every mesh.
+    """Return the reactions of every mesh on its gear, as REACTIONS names them.
 
     Parameters
     ----------
@@ -338,12 +338,14 @@ def _crossing(
 
 
 def _radius(surface: PoseSurface, result: OperatingPose, mesh: int) -> float:
+    """Return the loaded contact radius of a mesh from the surface, m; nan without load."""
     if result.forces[mesh] == 0.0:
         return float("nan")
     return surface.at(RADIUS, float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh]))
 
 
 def _flank(force: float) -> str:
+    """Name the loaded flank by the sign of the force: drive, back or open."""
     return "drive" if force > 0.0 else "back" if force < 0.0 else "open"
 
 

@@ -19,6 +19,7 @@ BRANCH_COLUMNS = (
     "drive_fraction",
     "back_fraction",
 )
+"""Columns of table `branches`, a row for each point and mesh; units stand in the names."""
 BRANCH_FINITE = tuple(name for name in BRANCH_COLUMNS if "multiplier" not in name)
 """Columns whose numbers are finite in every row."""
 SPECIAL_COLUMNS = (
@@ -36,6 +37,7 @@ SPECIAL_COLUMNS = (
     "edge",
     "proof",
 )
+"""Columns of table `special`: folds, doublings and other special points."""
 SWEPT_COLUMNS = (
     "direction",
     "speed_rpm",
@@ -46,6 +48,7 @@ SWEPT_COLUMNS = (
     "sweep_error",
     "note",
 )
+"""Columns of table `swept`: the branch of each periodic row of a sweep."""
 JUMP_COLUMNS = (
     "direction",
     "speed_before_rpm",
@@ -56,3 +59,4 @@ JUMP_COLUMNS = (
     "speed_rpm",
     "note",
 )
+"""Columns of table `jumps`: the branch that ends at each jump of a sweep."""

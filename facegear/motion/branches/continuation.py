@@ -195,6 +195,7 @@ def _track(
     run: ContinuationSettings,
     progress: Callable[[BranchPoint], None],
 ) -> _Track:
+    """Continue a branch in one direction until it closes, ends or reaches a limit."""
     track, step, before = _Track([start]), run.first, None
     if any(abs(start.u - np.log(limit)) < JUNCTION for limit in (run.p_min, run.p_max)) and _outward(
         start, run
@@ -280,6 +281,7 @@ def _onto_limit(
 
 
 def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
+    """Return the point's images under the period map, with the parameter appended."""
     return [np.append(z, start.u) for z in period_map.images(start.z, start.u)]
 
 

@@ -173,6 +173,7 @@ class _Runs:
 
 
 def _run_until_settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:
+    """Run from a state until it settles; locate the periodic orbit if there is one."""
     system, frequency = period_map.family.at(float(np.exp(u)))
     response = steady_state(system, frequency, settings, period_map.state(z, u))
     end_state = period_map.to_weighted(response.state, u)
@@ -201,9 +202,10 @@ def _is_same_motion(
 
 
 def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
-    """Largest difference of a state from the nearest image of another.
+    """Return the largest difference of a state from the nearest image of another state.
 
-    Shifts along neutral directions do not count; they are those of the orbit with more of them.
+    Shifts along neutral directions do not count; the neutral directions are those of the orbit that has more
+    of them.
     """
     neutral = max(loose, key=lambda shifts: shifts.shape[1])
     apart = np.array(images) - z

@@ -91,18 +91,20 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:
-    """Edges of all meshes, shape (2, m); NaN where a mesh never opens."""
+    """Return the edges (2, m) of all meshes over the length scale; nan where a mesh never opens."""
     levels = np.array(period_map.edges(u))
     return np.where(np.isfinite(levels), levels, np.nan)
 
 
 def _above(extrema: Array, levels: Array) -> Integers:
-    """Number of maxima and minima above each edge, shape (2, m, 2)."""
+    """Return the number of maxima and minima above each edge, (2, m, 2)."""
     return (extrema > levels[:, :, None, None]).sum(axis=-1)
 
 
 def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array], float]:
-    """Test function: height above a level of the extremum of a rank, counted from the largest."""
+    """Return the test function of a graze: height of the extremum of a rank, counted from the largest, above
+    an edge.
+    """
 
     def test(extrema: Array) -> float:
         value = extrema[mesh, kind, rank] if rank < extrema.shape[2] else -np.inf
@@ -154,12 +156,12 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _passages(extrema: Array, levels: Array) -> Integers:
-    """Pairs of passages of each finite edge, shape (2, m)."""
+    """Return the number of pairs of passages of each finite edge, (2, m)."""
     return np.where(np.isfinite(levels), np.diff(_above(extrema, levels))[..., 0], 0)
 
 
 def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
-    """Extrema that at one end of a stretch are no farther from an edge than `reach`."""
+    """Return which extrema are within `reach` of an edge at one end of a stretch."""
     first_gap, second_gap = first - level[:, None, None], second - level[:, None, None]
     finite = np.isfinite(first_gap) & np.isfinite(second_gap)
     return finite & (np.minimum(abs(first_gap), abs(second_gap)) < reach)

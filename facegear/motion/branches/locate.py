@@ -125,6 +125,7 @@ def _cut(segment: Segment, low: float, high: float) -> float:
 
 
 def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
+    """Find special points between two fractions of a segment; halve it while events are ambiguous."""
     first, second = segment.at(low), segment.at(high)
     if first.linear.neutral.shape != second.linear.neutral.shape:
         return _loosening(segment, low, high, depth)
@@ -165,12 +166,15 @@ def _join(first: list[Special], second: list[Special]) -> list[Special]:
 
 
 def _same_graze(first: Special, second: Special) -> bool:
+    """Whether two points are one graze of the same contact edge."""
     kinds = {first.kind, second.kind}
     return kinds == {Kind.GRAZE} and first.edge == second.edge and abs(first.after - second.after) < SHORTEST
 
 
 def _kink(specials: list[Special], low: float, high: float) -> float | None:
-    """Fraction of a graze in a stretch: multipliers bend sharply there, so each side is looked at alone."""
+    """Return the fraction of a graze inside a stretch: multipliers bend sharply there, so each side is
+    searched alone.
+    """
     margin = ASIDE * (high - low)
     inside = (special.after for special in specials if special.kind is Kind.GRAZE)
     return next((fraction for fraction in inside if low + margin < fraction < high - margin), None)
@@ -201,6 +205,7 @@ def _hidden(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
+    """Find grazes between two fractions of a segment, hidden pairs included."""
     events, is_ambiguous = _grazing(segment.period_map, segment.at(low), segment.at(high))
     between = None
     if is_ambiguous and high - low > SHORTEST:
@@ -218,12 +223,13 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
 
 
 def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
+    """Return the grazes between two points as events, and whether they are ambiguous."""
     graze_list, is_ambiguous = grazes(period_map, first, second)
     return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in graze_list], is_ambiguous
 
 
 def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Changes between two points, and whether more than one of a kind is among them."""
+    """Return the events between two points, and whether more than one of a kind is among them."""
     events, is_ambiguous = _grazing(period_map, first, second)
     plus_ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
@@ -252,10 +258,12 @@ def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> t
 
 
 def _value_at_rank(values: Array, rank: int, default: float = 0.0) -> float:
+    """Return the value at a rank, or a default beyond the last."""
     return float(values[rank]) if rank < values.size else default
 
 
 def _turns(first: BranchPoint, second: BranchPoint) -> bool:
+    """Whether the branch turns back in its parameter between two points."""
     a, b = first.tangent[-1], second.tangent[-1]
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 
@@ -278,6 +286,8 @@ def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Sp
 
 
 def _refine(segment: Segment, low: float, high: float, event: _Event) -> Special:
+    """Locate a special point by bracketed root finding of its test function."""
+
     def test(fraction: float) -> float:
         if event.kind is Kind.GRAZE:
             return event.test(segment.extrema(fraction))

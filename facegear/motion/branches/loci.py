@@ -132,6 +132,7 @@ def follow_locus(
 def _track(
     problem: LocusProblem, start: LocusPoint, run: LocusRun, progress: Callable[[LocusPoint], None]
 ) -> tuple[list[LocusPoint], list[tuple[Corner, LocusPoint]], BranchEnd]:
+    """Continue a locus in one direction until it closes, ends or reaches a limit."""
     points, step = [start], run.first
     corners: list[tuple[Corner, LocusPoint]] = []
     limits = np.log([run.p_min, run.p_max])
@@ -160,6 +161,7 @@ def _track(
 
 
 def _step(problem: LocusProblem, current_point: LocusPoint, step: float) -> LocusPoint:
+    """Return the next point of a locus, one step along its tangent."""
     guess = current_point.x + step * current_point.tangent
     next_point = solve_on_locus(
         problem,
@@ -178,6 +180,7 @@ def _step(problem: LocusProblem, current_point: LocusPoint, step: float) -> Locu
 def _onto_limit(
     problem: LocusProblem, current_point: LocusPoint, next_point: LocusPoint, axis: int, limit: float
 ) -> LocusPoint:
+    """Return the point at which a locus crosses the limit of a parameter."""
     row = np.zeros(current_point.x.size)
     row[-2 + axis] = 1.0
     fraction = (limit - current_point.x[-2 + axis]) / (next_point.x[-2 + axis] - current_point.x[-2 + axis])

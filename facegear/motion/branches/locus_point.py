@@ -143,7 +143,7 @@ class LocusPoint:
 
     @property
     def values(self) -> tuple[float, float]:
-        """Both parameters."""
+        """Both parameters at the point, in their units."""
         return float(np.exp(self.x[-2])), float(np.exp(self.x[-1]))
 
 
@@ -284,6 +284,7 @@ def _gradient(
 
 
 def _point(problem: LocusProblem, x: Array, borders: Borders, forward: Array, sharp: bool) -> LocusPoint:
+    """Return a point of a locus with its borders, gradient and tangent."""
     linear, surface, _ = _surface(problem, x)
     matrix = problem.matrix(linear)
     fresh = borders_of(matrix, borders)

@@ -283,7 +283,7 @@ def machine_loci(
 
 
 def _at_speed(locus: Locus) -> list[float]:
-    """Logarithms of the speeds at which a locus passes the machine with unchanged second parameter."""
+    """Return logarithms of the speeds at which a locus passes the machine, its second parameter unchanged."""
     x = np.array([point.x[-2:] for point in locus.points])
     special_points_at = []
     for a, b in pairwise(x):

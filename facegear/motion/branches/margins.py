@@ -112,6 +112,7 @@ def stability_limits(
 def _limits_of(
     period_map: PeriodMap, number: int, point: BranchPoint, start: float, run: ContinuationSettings
 ) -> list[StabilityLimit]:
+    """Follow a motion up and down a parameter to the first loss of stability."""
     start_point = at_parameter(period_map, point.z, float(np.log(start)))
     run = replace(run, to_first=True)
     sides = []
@@ -225,6 +226,7 @@ def passed_by(
 
 
 def _ends_stability(branch: Branch, special: Special) -> bool:
+    """Whether stability changes at a special point of a branch."""
     index = int(special.after)
     sides = branch.points[max(index, 0)], branch.points[min(index + 1, len(branch.points) - 1)]
     return sides[0].stable != sides[1].stable

@@ -216,6 +216,7 @@ def swept_motions(
 
 
 def _orbit(period_map: PeriodMap, direction: str, piece: Piece, index: int) -> SweptMotion:
+    """Solve for the orbit of one row of a sweep."""
     speed, label, period = float(piece.speeds[index]), piece.labels[index], int(piece.period[index])
     u = float(np.log(speed))
     z = period_map.to_weighted(piece.state(index), u)
@@ -253,6 +254,7 @@ def _next_to(period_map: PeriodMap, z: Array, u: float, period: int) -> tuple[Br
 
 
 def _shortest_period(period_map: PeriodMap, point: BranchPoint, period: int) -> int:
+    """Return the smallest period of an orbit, a divisor of `period`."""
     images = period_map.over(period).images(point.z, point.u)
     return next(
         divisor

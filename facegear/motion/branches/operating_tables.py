@@ -15,6 +15,7 @@ from facegear.motion.plan import Motion
 IRREGULAR = "not periodic"
 """Entry of `branch` for motions that no branch of periodic motions can contain."""
 NEUTRAL = "on it but for the place of a body that touches nothing, which is free"
+"""Note on a row that lies on its branch but for the free position of a body without contact."""
 
 
 def coexistence_table(
@@ -53,6 +54,7 @@ def coexistence_table(
 
 
 def _branch_of(motion: SettledMotion, branches: Sequence[Branch]) -> str:
+    """Return the number of the branch on which a motion lies, as text, or why there is none."""
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):
@@ -154,6 +156,7 @@ def swept_table(
 
 
 def _not_followed(period: int, longest: int) -> str:
+    """Say why the orbit of a period lies on no branch."""
     if period > longest:
         return f"the orbit is found; periods above longest_start_period = {longest} are not followed"
     return "not followed"

@@ -170,6 +170,7 @@ class PeriodMap:
         return integrator.by_time(self._by_phase(integrator, z))
 
     def _by_phase(self, integrator: Integrator, z: Array) -> Array:
+        """Return the state by phase (2, n) from weighted coordinates."""
         return (z / self.weights(integrator)).reshape(2, -1)
 
     def to_weighted(self, state: State, u: float) -> Array:
@@ -295,7 +296,9 @@ class PeriodMap:
         return linear.rates[key]
 
     def _rigid(self, integrator: Integrator, contact: Mask, weights: Array) -> Array:
-        """Orthonormal shifts that neither a mesh in contact nor a bearing feels; their multiplier is one."""
+        """Return orthonormal shifts that neither a mesh in contact nor a bearing feels; their multiplier is
+        one.
+        """
         key = (contact.tobytes(), weights.tobytes())
         if key not in self.memory:
             n = integrator.size

@@ -60,17 +60,17 @@ class BranchPoint:
 
     @property
     def z(self) -> Array:
-        """Weighted state (2 n,)."""
+        """State (2 n,) at the start of the period, over the length scale."""
         return self.x[:-1]
 
     @property
     def u(self) -> float:
-        """Logarithm of the parameter."""
+        """Natural logarithm of the parameter at the point."""
         return float(self.x[-1])
 
     @property
     def value(self) -> float:
-        """The parameter."""
+        """Parameter at the point, in its unit."""
         return float(np.exp(self.x[-1]))
 
     @cached_property
@@ -213,6 +213,7 @@ def correct(
 
 
 def _describe_location(period_map: PeriodMap, x: Array) -> str:
+    """Return name and value of the parameter at a point."""
     return f"{period_map.family.name} = {np.exp(x[-1]):.9g}"
 
 
@@ -281,6 +282,7 @@ def _by_chord(
 
 
 def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) -> Array:
+    """Return the Newton step of the bordered system, neutral directions excluded."""
     right = np.zeros(gap.size + 1 + linear.neutral.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ displacement
     right[gap.size + 1 :] = -linear.neutral.T @ displacement[:-1]
@@ -288,7 +290,7 @@ def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) ->
 
 
 def _bordered_inverse(linear: Linear, row: Array) -> Array:
-    """Inverse of bordered_matrix(); the one for the last row is stored."""
+    """Return the inverse of bordered_matrix(); the inverse for the last row used is stored."""
     key = row.tobytes()
     if key not in linear.inverses:
         linear.inverses.clear()
@@ -297,7 +299,7 @@ def _bordered_inverse(linear: Linear, row: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """Inverse of a matrix; the pseudoinverse where the matrix is singular, as bordered ones are at
+    """Return the inverse of a matrix; the pseudoinverse where it is singular, as bordered matrices are at
     branch points.
     """
     try:

@@ -39,7 +39,7 @@ def cubic(start_point: BranchPoint, end_point: BranchPoint) -> Array:
 def _slope(chord: Array, tangent: Array) -> Array:
     """Scale a tangent to the chord's length along it.
 
-    At a junction, where the tangent belongs to another branch, the chord itself is returned.
+    At a junction, where the tangent belongs to another branch, return the chord itself.
     """
     along = chord @ tangent
     length = np.linalg.norm(chord)
@@ -153,6 +153,7 @@ class Segment:
         return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
     def _near(self, fraction: float) -> BranchPoint:
+        """Return the computed point whose fraction along the segment is nearest."""
         return self.points_by_fraction[
             min(self.points_by_fraction, key=lambda candidate: abs(candidate - fraction))
         ]

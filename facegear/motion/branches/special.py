@@ -1,6 +1,13 @@
 """Special points of a branch: their kinds and the evidence for each.
 
 Folds and doublings: Seydel 2010; grazing: di Bernardo et al. 2008.
+
+Find where the stability of a branch may change and change back between two neighbouring points. Two
+multipliers that meet on the unit circle may leave it and come back within one step. The more they turn in the
+step, the narrower is such a band. The matrix of the map itself changes smoothly along a branch, also where
+multipliers meet. It is interpolated by cubics through the matrices and their slopes at both ends, on
+stretches over which no multiplier near the circle turns far. Where the multipliers of the interpolated
+matrices suggest a change, the branch itself is then examined.
 """
 
 from dataclasses import dataclass
@@ -99,6 +106,7 @@ def evidence(
 
 
 def _nearest(values: ComplexArray, goal: float) -> complex:
+    """Return the complex value nearest to a real goal."""
     return complex(values[np.argmin(np.abs(values - goal))])
 
 
@@ -162,7 +170,7 @@ def is_damped(segment: Segment, low: float, high: float) -> bool:
 
 
 def _distance(point: BranchPoint) -> float:
-    """Distance from the unit circle of the multiplier nearest to it."""
+    """Return the distance from the unit circle of the multiplier nearest to it."""
     return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
 
 
@@ -207,14 +215,16 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _widest_turn(distance: float) -> float:
-    """Angle over which a cubic errs by half the distance of the multipliers from the circle."""
+    """Return the angle, rad, over which a cubic errs by half the distance of the multipliers from the unit
+    circle.
+    """
     if distance < UNDAMPED:
         return WIDEST_TURN
     return float(np.clip((distance / (2.0 * CUBIC_ERROR)) ** 0.25, NARROWEST_TURN, WIDEST_TURN))
 
 
 def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
-    """Largest change of a multiplier near the unit circle, by the change (2 n, 2 n) of the matrix."""
+    """Return the largest change of a multiplier near the unit circle by a change (2 n, 2 n) of the matrix."""
     values, vectors = np.linalg.eig(point.linear.matrix)
     try:
         multiplier_changes = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
@@ -227,7 +237,9 @@ def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
 
 
 def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
-    """Matrices (K, 2 n, 2 n) at shares (K,) of a stretch, from those at its ends and their slopes there."""
+    """Return matrices (K, 2 n, 2 n) at fractions (K,) of a stretch from the matrices and slopes at
+    its ends.
+    """
     step = matrices[1] - matrices[0]
     start, end = changes
     sizes = [float(np.linalg.norm(slope)) for slope in (start, end, step)]
@@ -269,9 +281,10 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
 
 
 def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
-    """Return the look at which multipliers come so near to the circle that they may pass it, or None.
+    """Return the index of the intermediate point at which multipliers may pass the unit circle, or None.
 
-    `ends` are their distances at both ends of the stretch.
+    `values`: multipliers at the intermediate points; `ends`: distances from the circle at both ends of the
+    stretch; `error`: error of the interpolated multipliers.
     """
     nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
     before = ends[0] + looks * (ends[1] - ends[0])

@@ -209,9 +209,11 @@ class _Search:
                 )
 
     def _is_known(self, period: int, point: BranchPoint) -> bool:
+        """Whether a point lies on a branch that was followed already."""
         return any(lies_on(branch, point, period) for branch in self.branches)
 
     def _was_met(self, period: int, u: float) -> bool:
+        """Whether a special point of this period at this parameter was visited before."""
         return any(
             visited_period == period and abs(u - ended_at) < SAME_POINT
             for visited_period, ended_at in self.visited_points
@@ -219,6 +221,7 @@ class _Search:
 
 
 def _leave(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
+    """Follow the branch that leaves at a period doubling or a loss of symmetry."""
     return (
         doubled_branch(period_map, special, run)
         if special.kind is Kind.DOUBLING
@@ -284,6 +287,7 @@ def survey_summary(
 
 
 def _margin(loss: StabilityLimit) -> str:
+    """Say in words where a branch loses its stability, or up to where it does not."""
     if loss.special is None:
         return f"branch {loss.branch}: no loss up to {loss.parameter} = {loss.end_value:.6g}"
     kind = loss.special.kind.value

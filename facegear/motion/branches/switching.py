@@ -1,4 +1,8 @@
-"""From one branch onto another: mirror images, doubled periods, broken symmetry, found motions."""
+"""From one branch onto another: mirror images, doubled periods, broken symmetry, found motions.
+
+The new branch is sought beside the special point, along the null vector of M + I or M - I (Doedel et al.
+1991), with M the matrix of the period map.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -125,6 +129,7 @@ def image_point(period_map: PeriodMap, point: BranchPoint, symmetry: Symmetry) -
 
 
 def _image_special(period_map: PeriodMap, special: Special, symmetry: Symmetry) -> Special:
+    """Return a special point's mirror image, with meshes and signs exchanged."""
     count = symmetry.contacts.size
     sources = symmetry.contacts.tolist()
     meshes = tuple(sources.index(mesh) if mesh < count else mesh for mesh in special.meshes)

@@ -78,6 +78,7 @@ def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
 
 
 UM = 1e6
+"""Micrometres in a metre."""
 SHOWN_MULTIPLIERS = 8
 """Number of the largest multipliers that the table shows for each point."""
 

@@ -89,12 +89,12 @@ class Integrator:
 
     @property
     def order(self) -> int:
-        """Order of the steps."""
+        """Order of the Taylor polynomials of the steps."""
         return int(self.work.order)
 
     @property
     def scale(self) -> float:
-        """Length that the tolerance means, m."""
+        """Length to which the tolerance is relative, m."""
         return self.system.scale
 
     @property
@@ -114,7 +114,7 @@ class Integrator:
 
     @property
     def mesh_jacobian(self) -> Array:
-        """Deflections by coordinates, (m, n)."""
+        """Matrix (m, n) from coordinates to mesh deflections."""
         return self.system.mesh_jacobian
 
     @property

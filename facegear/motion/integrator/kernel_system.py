@@ -12,6 +12,7 @@ from facegear.motion.integrator.reduction import Coupling
 from facegear.motion.integrator.system import System
 
 TAU = 2.0 * np.pi
+"""Length of a mesh period in phase, rad."""
 MIN_CLEARANCE = 1e-12
 """Clearance, over the length scale, up to which it is rounding."""
 _contiguous = partial(np.ascontiguousarray, dtype=float)
@@ -85,7 +86,7 @@ def system_numbers(system: System) -> dict[str, Any]:
     Returns
     -------
     dict
-        Arrays, numbers and flags in SI units; what `motion.system` takes.
+        Arrays, numbers and flags in SI units; what `_kernels.motion.system` takes.
     """
     n, rubbing = system.size, system.rubbing
     return {
@@ -183,6 +184,7 @@ def _gauss(count: int) -> tuple[Array, Array]:
 
 
 def _coupling(coupling: Coupling | None, n: int) -> Array:
+    """Return the four coupling matrices as one array, empty without coupling."""
     if coupling is None:
         return np.zeros((0, n, n))
     return np.array([coupling.dampers, coupling.gyroscopic, coupling.circulatory, coupling.centrifugal])
@@ -190,8 +192,10 @@ def _coupling(coupling: Coupling | None, n: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _fastest(system: System) -> tuple[float, float]:
-    """Largest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of the law
-    that matter, in multiples of the mesh frequency.
+    """Return the largest natural frequency, 1/s, and the number of the law's harmonics that matter.
+
+    The frequency is that with all meshes in contact, plus damping. The harmonics count in multiples of the
+    mesh frequency.
     """
     contacts = system.contacts
     mesh = np.zeros(len(system.mesh_jacobian))
@@ -208,5 +212,7 @@ def _fastest(system: System) -> tuple[float, float]:
 
 @kept_by_content(8)
 def _largest_root(diagonal: Array, rows: Array, factors: Array) -> float:
-    """Largest eigenvalue of diag(own (n,)) + rows^T diag(factors (m,)) rows, rows (m, n)."""
+    """Return the largest eigenvalue of diag(diagonal (n,)) + rows^T diag(factors (m,)) rows, with rows (m,
+    n).
+    """
     return float(np.linalg.eigvalsh(np.diag(diagonal) + (rows.T * factors) @ rows)[-1])

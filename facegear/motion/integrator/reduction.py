@@ -1,4 +1,12 @@
-"""Exact reduction to the motions that meshes excite or feel, and coupling beside the meshes."""
+"""Exact reduction to the motions that meshes excite or feel, and coupling beside the meshes.
+
+Reduce the coordinates: leave out exactly the motions that no mesh can excite or feel. Degrees of freedom with
+the same bearing frequency (and so, with C = lambda M + beta K, the same damping) may be combined freely. Of
+each such group, only the combinations that appear in a mesh deflection move together with the others. The
+rest (pinion axial motions, the rigid rotation, one translation of each pinion) are decoupled. Further dampers
+and turning bodies couple coordinates, too. Coordinates that they couple to a motion in the basis are in the
+basis as well.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -155,6 +163,7 @@ class Coupling:
 
     @property
     def _matrices(self) -> tuple[Array, Array, Array, Array]:
+        """Matrices of dampers, gyroscopic, circulatory and centrifugal terms."""
         return self.dampers, self.gyroscopic, self.circulatory, self.centrifugal
 
 
@@ -323,7 +332,7 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
 def _basis(
     linear: LinearModel, stiffness: Array, directions: Array, coupling: Coupling | None
 ) -> tuple[Array, Array]:
-    """Basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
+    """Return basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
     them.
     """
     axes, mass, principal = _principal_axes(linear, stiffness)
@@ -343,7 +352,7 @@ def _basis(
 
 
 def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None, Array, Array]:
-    """Axes (dof, dof), in columns, along which masses and bearings are decoupled, or None for the
+    """Return axes (dof, dof), in columns, along which masses and bearings are decoupled; None for the
     coordinates.
 
     Also return masses and stiffnesses (dof,) along them.
@@ -374,6 +383,7 @@ def _coupling(linear: LinearModel) -> Coupling | None:
 
 
 def _ring_rows(linear: LinearModel) -> list[Array]:
+    """Return the rows that give the displacement of each bearing with clearance."""
     rows = np.zeros((len(linear.ring_coordinates), 3, linear.size))
     for row, coordinates in zip(rows, linear.ring_coordinates, strict=True):
         row[[0, 1], coordinates] = 1.0

@@ -25,6 +25,7 @@ from facegear.motion.integrator.reduction import Coupling, Reduction
 RING_ROWS = 3
 """Rows of a bearing with clearance: x and y of the body, and one of zeros."""
 NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
+"""Fourier series of an error that is zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +163,10 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
 
 @kept_by_content(8)
 def _kinds(series: tuple[Harmonics, ...]) -> tuple[Array, Integers]:
-    """Different series of e(t) among contacts and rings, and the kind of each; shared, must not be
-    changed.
+    """Return the different series of e(t) among contacts and bearing rings, and the number of each one's
+    series.
+
+    The result is shared and must not be changed.
     """
     return different(series)
 

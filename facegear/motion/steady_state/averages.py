@@ -124,7 +124,7 @@ class Averages:
         )
 
     def views(self, views: Array, periodic: bool) -> tuple[Array, Array, Array]:
-        """RMS of linear combinations of the coordinates.
+        """Compute the RMS of linear combinations of the coordinates.
 
         Parameters
         ----------
@@ -164,6 +164,7 @@ class Averages:
         return replace(self, **{name: getattr(self, name)[batches] for name in names})
 
     def _whole(self, batches: Array) -> Array:
+        """Return the weighted mean of batches."""
         return np.tensordot(self.weight / self.weight.sum(), batches, 1)
 
 
@@ -280,7 +281,7 @@ def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Arra
 
 
 def _successive(batches: Array) -> Array:
-    """Correlation (columns,) of each batch with the next, as it is in the sample; 0 without spread."""
+    """Return the correlation (columns,) of each batch with the next batch; 0 without spread."""
     off = batches - batches.mean(axis=0)
     square = (off * off).sum(axis=0)
     return np.asarray((off[1:] * off[:-1]).sum(axis=0) / np.where(square > 0.0, square, 1.0))
@@ -317,5 +318,5 @@ def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:
 
 @cache
 def _student(freedom: int, confidence: float) -> float:
-    """Two-sided quantile of Student's distribution."""
+    """Return the two-sided quantile of Student's distribution."""
     return float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence))

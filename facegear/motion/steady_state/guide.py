@@ -62,11 +62,11 @@ class Guide:
 
     @cached_property
     def chord(self) -> Array:
-        """The matrix (2 n, 2 n) of step()."""
+        """Inverse matrix (2 n, 2 n) of Newton's step, kept from the guide's orbit (chord method)."""
         return np.asarray(((self.orbit.vectors / (1.0 - self.orbit.multipliers)) @ self.inverse).real)
 
     def step(self, change: Array) -> Array:
-        """Newton's step for a change over the period.
+        """Return Newton's step for a change over the period, with the matrix of the guide's orbit.
 
         Parameters
         ----------
@@ -127,6 +127,7 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
 
 
 def _follow_guide(integrator: Integrator, state: Array, guide: Guide) -> SettlingResult | None:
+    """Run a few periods and solve for an orbit near the guide's; None if there is none."""
     ends = state[None]
     for block in BLOCKS:
         run = integrator.run(ends[-1], block)

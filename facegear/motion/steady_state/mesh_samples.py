@@ -79,7 +79,9 @@ def errors_of_period(system: System, per_period: int) -> Array:
 
 @kept_by_content(2)
 def _errors(series: Array, kind: Integers, per_period: int) -> Array:
-    """Errors (per_period, contacts) of contacts of given kinds at the samples of a mesh period, m."""
+    """Return the errors (per_period, contacts), m, of contacts of given kinds at the samples of a mesh
+    period.
+    """
     return np.asarray(stacked_values(series, np.arange(per_period) / per_period)[:, kind])
 
 
@@ -129,7 +131,9 @@ def mesh_forces(system: System, contact_deflections: Array, per_period: int) -> 
 
 
 def _transmitted(system: System, contact_deflections: Array, cycles: Array) -> Array:
-    """Elastic forces (..., K, meshes), N, of deflections (..., K, contacts) at phases (K,) in mesh cycles."""
+    """Return elastic forces (..., K, meshes), N, from deflections (..., K, contacts), m, at phases (K,) in
+    mesh cycles.
+    """
     contacts = system.contacts
     beyond = beyond_edges(contact_deflections, system.lower[:contacts], system.upper[:contacts])
     forces = system.law.force(cycles, beyond)

@@ -310,10 +310,12 @@ def _comes_first(numbers: Array, reference: Array) -> bool:
 
 
 def _cycle_of(response: SteadyState) -> Cycle:
+    """Return the cycle of a steady state."""
     return Cycle(response.system, response.coordinates, response.per_period, response.orbit)
 
 
 def _cycle_of_first_watch(first_watch: FirstWatch, system: System) -> Cycle | None:
+    """Return the cycle of a motion after its first watch, None if it has not settled."""
     if first_watch.watch_result is None:
         return None
     window = first_watch.watch_result.window

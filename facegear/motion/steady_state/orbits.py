@@ -240,7 +240,7 @@ class _Tangent:
         return max(float(off[off > UNIT_TOLERANCE].min(initial=1.0)), 1e-3)
 
     def correction(self, gap: Array) -> Array:
-        """Newton's step for a change (2 n,) over the period.
+        """Return Newton's step of the state for its change `gap` (2 n,) over the period.
 
         Positions along neutral directions are free: the solution of minimum norm leaves them.
         """
@@ -342,6 +342,7 @@ def shortest_period(integrator: Integrator, start: Array, ends: Array, residual:
 
 
 def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
+    """Build an orbit with its multipliers, checked against Liouville's formula."""
     multipliers = tangent.multipliers
     sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(

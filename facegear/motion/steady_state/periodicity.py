@@ -15,6 +15,11 @@ SMALL, VERY_SMALL = 0.02, 1e-3
 """Changes over a period, over the length scale, that are a sign of closing: if they fall, and in any case."""
 MAX_TREND = 0.9
 """Ratio of the changes over a trend above which they are not falling."""
+OFTEN = 0.25
+"""Fraction of the places of a run at which it seems to close, above which its class depends on where it is
+judged. Of 41 irregular motions among 500 random oscillators 38 lie below 0.23, and starts 1e-12 aside leave
+none of them open; of the three above 0.33 two are chaotic or not settled by chance, and one never settles.
+"""
 NO_DIFFERENCE, SPLIT = 10.0, 100.0
 """Change over a part of a closed period, in goals: below the first there is none, above the second there
 is one.
@@ -43,6 +48,11 @@ class BestReturn:
     def shrinking(self) -> bool:
         """Whether the run shows signs of closing: the change is small and falls, or is very small."""
         return self.residual < (SMALL if self.trend < MAX_TREND else VERY_SMALL)
+
+    @property
+    def seems_to_close(self) -> bool:
+        """Whether the change is small and falls, which a motion that never closes may show for a while."""
+        return self.residual < SMALL and self.trend < MAX_TREND
 
     @property
     def rate(self) -> float:
@@ -89,6 +99,31 @@ def best_return(integrator: Integrator, ends: Array, settings: Settings) -> Best
         if last < 0.2 * best and not best <= settings.periodic_residual:
             best_period, best = index + 1, last
     return BestReturn(best_period, best, trend(integrator, ends, best_period))
+
+
+def often_seems_to_close(integrator: Integrator, ends: Array, settings: Settings) -> bool:
+    """Whether an irregular run often seems to close, although it does not.
+
+    A chaotic attractor that is small over the length scale returns near to one of its last states almost
+    anywhere. Whether its run counts as chaotic or as not settled is then a matter of where it is judged.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of successive mesh periods, m and m/rad.
+    settings : Settings
+        Settings of the run; they say which periods are looked for.
+
+    Returns
+    -------
+    bool
+        Whether the change over some period is small and falls at more than OFTEN of the places.
+    """
+    first = min(settings.longest_period + 2 * TREND, len(ends))
+    returns = (best_return(integrator, ends[:stop], settings) for stop in range(first, len(ends) + 1, TREND))
+    return bool(np.mean([near.seems_to_close for near in returns]) > OFTEN)
 
 
 def trend(integrator: Integrator, ends: Array, period: int) -> float:
@@ -180,6 +215,7 @@ def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
 
 
 def _at_rest(near: BestReturn, goal: float) -> bool:
+    """Whether a run has converged, judged by its residual and rate of approach."""
     if near.residual > goal or np.isnan(near.trend):
         return False
     return near.residual <= 10.0 * goal * max(1.0 - near.rate, 1e-3)

@@ -8,7 +8,7 @@ import numpy as np
 from facegear.arrays import Array, ComplexArray
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.integrator.system import System
-from facegear.motion.plan import Motion, State
+from facegear.motion.plan import Look, Motion, State
 from facegear.motion.steady_state.averages import Averages, Moments
 from facegear.motion.steady_state.mesh_samples import (
     by_mesh,
@@ -56,8 +56,8 @@ class SteadyState:
     periods_run
         For how many mesh periods the motion was watched in all before it was named so.
     looks
-        Mesh periods of the motion that this start and another one came to (0: none), where the two differ
-        and the motion is called not settled for that reason alone; else None.
+        Motions to which this start and another one came, where the two differ and the motion is called not
+        settled for that reason alone; else None.
     state
         At the end.
     """
@@ -75,7 +75,7 @@ class SteadyState:
     orbit: Orbit | None
     exponent: tuple[float, float] | None
     periods_run: int
-    looks: tuple[int, int] | None
+    looks: tuple[Look, Look] | None
     state: State
 
     @property
@@ -142,7 +142,7 @@ class SteadyState:
 
 
 def response_of(
-    system: System, integrator: Integrator, watch_result: WatchResult, looks: tuple[int, int] | None
+    system: System, integrator: Integrator, watch_result: WatchResult, looks: tuple[Look, Look] | None
 ) -> SteadyState:
     """Make the response of a run that was watched.
 
@@ -154,8 +154,8 @@ def response_of(
         Integrates the system at one mesh frequency.
     watch_result : WatchResult
         Result of watching the run.
-    looks : tuple of int or None
-        Periods of the motions of this start and another, where they differ; see SteadyState.
+    looks : tuple of Look or None
+        Motions of this start and another, where they differ; see SteadyState.
 
     Returns
     -------

@@ -4,12 +4,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Settings
 from facegear.motion.requests import RunPlan, RunRequest, alone
-from facegear.motion.steady_state.orbits import MATRICES, UNIT_TOLERANCE, Orbit, changes, drawn_in, shoot
+from facegear.motion.steady_state.orbits import (
+    MATRICES,
+    UNIT_TOLERANCE,
+    Orbit,
+    changes,
+    drawn_in,
+    largest,
+    shoot,
+)
 from facegear.motion.steady_state.periodicity import (
     SMALL,
     TREND,
@@ -46,6 +54,11 @@ NOISE, MAX_SPECTRAL_RADIUS = 50.0, 0.95
 """Distance, in tolerances, by which new steps in each period may move a run; spectral radius of an orbit that
 holds a run this near. Along a neutral direction the error of the steps accumulates.
 """
+FEW_PERIODS = 16
+"""Number of mesh periods with changes that are not small up to which a run counts as going straight to its
+orbit: a start from rest needs some before it is near any motion. The orbit that a run reaches later may be a
+matter of chance.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +93,39 @@ class SettlingResult:
     ends: Array
     is_known_orbit: bool = False
     aperiodic_until: int = 0
+
+
+def count_unsteady_periods(integrator: Integrator, run: SettlingResult, period: int) -> int:
+    """Count the periods of a run before the last change over a period that is not small.
+
+    The count is 0 if there are at most FEW_PERIODS such changes. Of a run so long that its first states are
+    not kept, it is the number of periods after which the run was last seen to be near no periodic motion: a
+    run that comes slowly to its orbit, as beside a branch point, is long but not unsteady.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    run : SettlingResult
+        The run and its last states.
+    period : int
+        Period of its orbit, mesh periods.
+
+    Returns
+    -------
+    int
+        Number of mesh periods.
+    """
+    is_large = _changes_are_large(integrator, run.ends, period)
+    if is_large.sum() > FEW_PERIODS:
+        quiet = int(is_large[::-1].argmax())
+        return max(run.periods_run - quiet, 0)
+    return run.aperiodic_until if run.periods_run > len(run.ends) else 0
+
+
+def _changes_are_large(integrator: Integrator, ends: Array, period: int) -> Mask:
+    """Mask of the mesh periods at whose end the change over a period is not small."""
+    return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL
 
 
 def settle(
@@ -221,6 +267,7 @@ class SettlingRun:
         )
 
     def _advance(self) -> RunPlan[None]:
+        """Run a further block of periods and store their end states."""
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.initial_count and self.known_orbit is None:
@@ -264,6 +311,7 @@ class SettlingRun:
         return worth
 
     def _shot(self, period: int, matrices: int = MATRICES) -> Orbit | None:
+        """Solve for a periodic orbit from the current state by shooting."""
         return shoot(self.integrator, self.state, period, self.settings.periodic_residual, matrices)
 
     def _by_itself(self, near: BestReturn, last: bool) -> SettlingResult | None:
@@ -337,6 +385,7 @@ class SettlingRun:
         self.initial_count = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> SettlingResult:
+        """Return the result with an orbit, or with the current state without one."""
         state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
         return SettlingResult(

@@ -16,7 +16,7 @@ from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.integrator.reduction import Reduction, reduce
 from facegear.motion.integrator.system import System, machine_system
-from facegear.motion.plan import Settings, State
+from facegear.motion.plan import Look, Settings, State
 from facegear.motion.requests import RunPlan, alone
 from facegear.motion.steady_state.guide import Guide
 from facegear.motion.steady_state.mirror_images import (
@@ -27,7 +27,8 @@ from facegear.motion.steady_state.mirror_images import (
 )
 from facegear.motion.steady_state.periodicity import KnownOrbit
 from facegear.motion.steady_state.response import SteadyState, response_of
-from facegear.motion.steady_state.watch import FirstWatch, begin, disagreeing, not_settled, watch
+from facegear.motion.steady_state.second_look import find_disagreement, withdraw_class
+from facegear.motion.steady_state.watch import FirstWatch, begin, watch
 from facegear.motion.symmetries import Symmetry
 
 
@@ -97,6 +98,7 @@ def _excited(machine: Machine, basis: Array, system: System) -> System:
 
 @lru_cache(maxsize=8)
 def _cached_reduction(machine: Machine) -> Reduction:
+    """Reduce a machine's coordinates; equal machines share the result."""
     return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 
@@ -299,7 +301,7 @@ def _naming(speed_rpm: float) -> Iterator[None]:
     try:
         yield
     except NotConverged as error:
-        raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
+        raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.attempts) from None
 
 
 def steady_state(
@@ -356,18 +358,10 @@ def _steady(system: System, first_watch: FirstWatch) -> RunPlan[SteadyState]:
     """Run plan of the steady state of a run, and of the check whether it holds from other starts."""
     integrator, settings = first_watch.integrator, first_watch.settings
     watch_result = yield from watch(first_watch)
-    first, states = watch_result.settling_result, watch_result.window.ends
-    second_look = disagreeing(
-        integrator,
-        first_watch.start,
-        settings,
-        first,
-        watch_result.motion,
-        states,
-        watch_result.wandering_periods,
-    )
-    other_result, looks = (yield from second_look), None
-    if other_result is not None:
-        looks = (first.period, other_result.period)
-        watch_result = yield from not_settled(integrator, watch_result, other_result, settings)
+    disagreement = yield from find_disagreement(integrator, first_watch.start, settings, watch_result)
+    looks = None
+    if disagreement is not None:
+        other_result, other_look = disagreement
+        looks = (Look(watch_result.settling_result.period, watch_result.motion), other_look)
+        watch_result = yield from withdraw_class(integrator, watch_result, other_result, settings)
     return response_of(system, integrator, watch_result, looks)

@@ -1,112 +1,17 @@
-"""A run watched until the class of its motion is known, and second looks from other starts."""
+"""A run watched until the class of its motion is known."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-import scipy
-
-from facegear.arrays import Array, Mask
+from facegear.arrays import Array
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.plan import Motion, Settings
 from facegear.motion.requests import RunPlan
 from facegear.motion.steady_state.guide import Guide, settle_by_guide
 from facegear.motion.steady_state.mesh_samples import by_mesh, each_deflection
-from facegear.motion.steady_state.orbits import change, largest
-from facegear.motion.steady_state.periodicity import MAX_TREND, SMALL, KnownOrbit, best_return, wanders
-from facegear.motion.steady_state.settle import SettlingResult, settling
+from facegear.motion.steady_state.periodicity import KnownOrbit, best_return, wanders
+from facegear.motion.steady_state.settle import SettlingResult, count_unsteady_periods, settling
 from facegear.motion.steady_state.statistics import drifts
 from facegear.motion.steady_state.window import Exponent, Growth, Window, largest_exponent, run_window
-
-WANDERED = 16
-"""After so many periods with changes that are not small the orbit reached may be a matter of chance."""
-MAX_LOOKS = 7
-CHANCE = 0.05
-"""A periodic motion is out of doubt when fewer starts than this fraction would fail to close, which is itself
-known with a confidence of one minus as much."""
-
-
-def disagreeing(
-    integrator: Integrator,
-    start: Array,
-    settings: Settings,
-    first: SettlingResult,
-    motion: Motion,
-    states: Array,
-    before: int,
-) -> RunPlan[SettlingResult | None]:
-    """Return the motion of another start (2, n) if it refutes the class of the first; None if the class
-    holds.
-
-    A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
-    periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times if that is more, until
-    the periods for which the runs have wandered show that hardly a start would fail to close. Two irregular
-    motions are one class, which is looked at once. `states` (periods, 2, n): of the first motion at the end
-    of its periods.
-    before: periods for which it had wandered when it was given up for the first time.
-    """
-    if not settings.second_looks or motion is Motion.NOT_SETTLED:
-        return None
-    wandered = before + wandering(integrator, first, first.period)
-    if first.period and not wandered:
-        return None
-    known = KnownOrbit(first.orbit, states) if first.orbit else None
-    starts = other_starts(integrator, start, settings.aside, first)
-    for looks in range(1, max(MAX_LOOKS, settings.second_looks) + 1):
-        other = yield from settling(integrator, next(starts), settings, known_orbit=known)
-        if other.period != first.period:
-            return other
-        wandered += wandering(integrator, other, other.period)
-        rare = never_closing(looks + 1, wandered, 2 * settings.settle) < CHANCE
-        if not first.period or (rare and looks >= settings.second_looks):
-            break
-    return None
-
-
-def never_closing(runs: int, wandered: int, patience: int) -> float:
-    """Largest chance, with a confidence of 1 - CHANCE, that a run wanders for longer than `patience` periods.
-
-    `runs` that all closed have wandered for `wandered` periods in all. A chaotic transient ends in any period
-    with the same chance, so that the total is distributed as Gamma of order `runs`.
-    """
-    rate = scipy.special.gammaincinv(runs, CHANCE) / max(wandered, 1)
-    return float(np.exp(-rate * patience))
-
-
-def other_starts(
-    integrator: Integrator, start: Array, aside: float, first: SettlingResult
-) -> Iterator[Array]:
-    """Starts (2, n) beside that of a run, by a fraction `aside` of the length scale.
-
-    They lie in any direction in which the run itself has moved. A symmetric run is left symmetric: what
-    disturbs the symmetry dies away or shows in the exponent, and until it has died away mirrored meshes,
-    which all but switch together, cost half as many steps again.
-    """
-    random = np.random.default_rng(0)
-    moves = first.ends - first.ends.mean(axis=0)
-    while True:
-        off = np.tensordot(random.normal(size=len(moves)), moves, 1)
-        yield start + aside * off / change(integrator, off, 0.0 * off)
-
-
-def wandering(integrator: Integrator, settled: SettlingResult, period: int) -> int:
-    """Count the periods of a run before the last change over a period that is not small.
-
-    They are 0 if there are but few. Of a run so long that its first states are not kept any more, what counts
-    is when it was seen for the last time to be near no periodic motion.
-    """
-    large = _large(integrator, settled, period)
-    if large.sum() > WANDERED:
-        quiet = int(large[::-1].argmax())
-        return max(settled.periods_run - quiet, 0)
-    return settled.aperiodic_until if settled.periods_run > len(settled.ends) else 0
-
-
-def _large(integrator: Integrator, settled: SettlingResult, period: int) -> Mask:
-    """Mask of the kept mesh periods at whose end the change over a period is not small."""
-    ends = settled.ends
-    return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL
-
 
 CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
 """Class of a motion that does not close, by the growth of small disturbances."""
@@ -132,8 +37,8 @@ class WatchResult:
         Stretch on which the motion is measured.
     periods_run : int
         Number of mesh periods run.
-    wandering_periods : int
-        Periods for which the run had wandered when it was first taken not to close.
+    unsteady_periods : int
+        Number of unsteady mesh periods when the run was first taken not to close.
     """
 
     settling_result: SettlingResult
@@ -141,7 +46,12 @@ class WatchResult:
     exponent: Exponent | None
     window: Window
     periods_run: int
-    wandering_periods: int = 0
+    unsteady_periods: int = 0
+
+    @property
+    def watched_ends(self) -> Array:
+        """States (periods, 2, n) at the ends of the last mesh periods that were watched, m and m/rad."""
+        return self.settling_result.ends if self.exponent is None else self.exponent.ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,22 +147,23 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
         first_watch.settling_result,
         first_watch.settings,
     )
-    periods_run, wandering_periods = settling_result.periods_run, 0
+    periods_run, unsteady_periods = settling_result.periods_run, 0
     for extensions_left in range(settings.extensions, -1, -1):
-        exponent = yield from largest_exponent(integrator, settling_result.state, settings)
+        motion, exponent = yield from classify_run(integrator, settling_result, settings)
         window = exponent.window
-        motion = _class(integrator, settling_result, exponent, window, settings)
         periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.INCONCLUSIVE or not extensions_left:
             break
         near = best_return(integrator, settling_result.ends, settings)
-        wandering_periods = wandering_periods or wandering(integrator, settling_result, near.period)
+        unsteady_periods = unsteady_periods or count_unsteady_periods(
+            integrator, settling_result, near.period
+        )
         settling_result = yield from settling(integrator, window.ends[-1], settings, exponent.ends)
         periods_run += settling_result.periods_run
         if settling_result.period:
             return replace(
                 _periodic(integrator, settling_result, settings, periods_run),
-                wandering_periods=wandering_periods,
+                unsteady_periods=unsteady_periods,
             )
     return WatchResult(settling_result, motion, exponent, window, periods_run)
 
@@ -260,41 +171,33 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
 def _periodic(
     integrator: Integrator, settling_result: SettlingResult, settings: Settings, periods_run: int
 ) -> WatchResult:
+    """Return the result of a run that settled on a periodic motion, measured over one window."""
     window = run_window(integrator, settling_result.state, settling_result.period, settings.samples)
     return WatchResult(settling_result, Motion.PERIODIC, None, window, periods_run)
 
 
-def not_settled(
-    integrator: Integrator, watch_result: WatchResult, other_result: SettlingResult, settings: Settings
-) -> RunPlan[WatchResult]:
-    """Result where another start came to another motion: not settled, measured on one of the two.
-
-    It is measured on the run that did not close, if there is one.
+def classify_run(
+    integrator: Integrator, run: SettlingResult, settings: Settings
+) -> RunPlan[tuple[Motion, Exponent]]:
+    """Classify a motion that did not close while it was watched, by its exponent and the window after it.
 
     Parameters
     ----------
     integrator : Integrator
         Integrates the system at one mesh frequency.
-    watch_result : WatchResult
-        Result of the first start.
-    other_result : SettlingResult
-        Where the other start settled.
+    run : SettlingResult
+        The run that did not close.
     settings : Settings
         Settings of the run.
 
     Returns
     -------
-    RunPlan of WatchResult
-        Computation that returns the result.
+    RunPlan of tuple
+        Computation that returns the class of motion, NOT_SETTLED if it stays open, and the largest Lyapunov
+        exponent.
     """
-    settling_result = other_result if watch_result.settling_result.period else watch_result.settling_result
-    periods_run = watch_result.periods_run + other_result.periods_run
-    if not watch_result.settling_result.period:
-        return replace(watch_result, motion=Motion.NOT_SETTLED, periods_run=periods_run)
-    exponent = yield from largest_exponent(integrator, settling_result.state, settings)
-    periods_run += len(exponent.ends)
-    left = replace(settling_result, period=0, orbit=None)
-    return WatchResult(left, Motion.NOT_SETTLED, exponent, exponent.window, periods_run)
+    exponent = yield from largest_exponent(integrator, run.state, settings)
+    return _class(integrator, run, exponent, exponent.window, settings), exponent
 
 
 def _class(
@@ -304,15 +207,14 @@ def _class(
     window: Window,
     settings: Settings,
 ) -> Motion:
-    """Class of a motion that was watched without closing, from its exponent and the window after it."""
+    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after it."""
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
     near = best_return(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settling_result.residual, near.residual) < ESCAPING
     contact_deflections = each_deflection(integrator.system, window.samples, window.per_period)
     deflections = by_mesh(integrator.system, contact_deflections)
     by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
-    converging = near.residual < SMALL and near.trend < MAX_TREND
     drifting = motion is Motion.QUASI_PERIODIC and wanders(integrator, window.ends, near.period)
-    if escaping or converging or drifting or drifts(window.averages, by_period):
+    if escaping or near.seems_to_close or drifting or drifts(window.averages, by_period):
         return Motion.NOT_SETTLED
     return motion

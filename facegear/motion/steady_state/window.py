@@ -274,5 +274,6 @@ def smooth_mean(rates: Array) -> tuple[float, float]:
 
 
 def _weighted_mean(rates: Array) -> float:
+    """Return the mean of rates with a smooth weight that vanishes at both ends."""
     t = (np.arange(rates.size) + 0.5) / rates.size
     return float(np.average(rates, weights=np.exp(-1.0 / (t * (1.0 - t)))))

@@ -216,7 +216,7 @@ class OrbitFollower:
         return integrator.by_time(orbit.state + kick * off)
 
     def _stable(self, speed: float, state: State, period: int) -> HeldOrbit | None:
-        """Stable orbit of a period at a speed near a state, or None."""
+        """Return the stable orbit of a period at a speed near a state; None if there is none."""
         integrator, orbit = self._near(speed, state, period)
         if orbit is None or abs(orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
             return None
@@ -232,7 +232,9 @@ class OrbitFollower:
         )
 
     def _near(self, speed: float, state: State, period: int) -> tuple[Integrator, Orbit | None]:
-        """Integrator, and the orbit of a period at a speed to which a state belongs, stable or not."""
+        """Return the integrator, and the orbit of a period at a speed to which a state belongs, stable or
+        not.
+        """
         system, frequency = self.at(speed)
         integrator = Integrator(system, frequency, min(self.settings.tolerance, FINE))
         start = integrator.by_phase(state)

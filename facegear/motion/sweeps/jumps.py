@@ -257,7 +257,7 @@ def _jump(
 
 
 def _preferred(before: Array, after: Array, images: Integers) -> Integers:
-    """Image (meshes,) of the motion after a jump that is reported.
+    """Return the image, a permutation of the meshes (meshes,), of the motion after a jump that is reported.
 
     Of the images that the symmetries of the motion before the jump allow, it is the one with the largest AC
     RMS in the first mesh in which they differ.
@@ -269,7 +269,7 @@ def _preferred(before: Array, after: Array, images: Integers) -> Integers:
 
 
 def _stored_side(piece: Piece, position: int) -> JumpSide:
-    """Response that a sweep has found at one of its speeds."""
+    """Return the response that a sweep has found at one of its speeds."""
     return JumpSide(
         speed=float(piece.speeds[position]),
         ac_rms=piece.deflection_ac_rms[position],

@@ -51,8 +51,8 @@ class Piece:
     leading_multiplier, exponent_per_period, exponent_interval : (P,) array
         Floquet multiplier, Lyapunov exponent and its half-width; NaN where there is none.
     first_look_period, second_look_period : (P,) array
-        Mesh periods of the motions to which two starts came (0: not periodic) where the motion is not settled
-        because they differ, else NaN.
+        Mesh periods of the motions to which two starts came (0: not periodic; both 0: two irregular classes)
+        where the motion is not settled because they differ, else NaN.
     symmetry_broken : (P,) array
         Whether the motion is periodic and has mirror images that are other motions.
     spectrum : (P, M, orders) array
@@ -138,7 +138,7 @@ class Piece:
         return Piece(**{name: getattr(self, name)[speeds] for name in self.__dataclass_fields__})
 
     def tail(self, start: int) -> "Piece":
-        """Return the results from a position on.
+        """Return the results from one speed of the piece on.
 
         Parameters
         ----------
@@ -325,7 +325,10 @@ def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
 def _row(
     views: Array, directions: int, speed: float, response: SteadyState
 ) -> dict[str, Array | float | str]:
-    """Numbers of one response; views (n, directions + modes) takes coordinates to translations and modes."""
+    """Return the numbers of one response that a sweep stores.
+
+    `views` (n, directions + modes) takes coordinates to translations and modes.
+    """
     periodic = response.period > 0
     meshes = response.moments
     rms, ac_rms, interval = response.averages.views(views, periodic)
@@ -334,7 +337,7 @@ def _row(
     strongest = (by_period @ views[:, directions + modal.argmax()]).reshape(-1, 1)
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
-    first_look, second_look = response.looks or (np.nan, np.nan)
+    looks = [np.nan] * 2 if response.looks is None else [look.period for look in response.looks]
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
     translations = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
     return {
@@ -353,8 +356,8 @@ def _row(
         "exponent_per_period": exponent,
         "exponent_interval": half,
         "periods_run": float(response.periods_run),
-        "first_look_period": float(first_look),
-        "second_look_period": float(second_look),
+        "first_look_period": float(looks[0]),
+        "second_look_period": float(looks[1]),
         "symmetry_broken": symmetry_broken(response),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,

@@ -229,6 +229,7 @@ JUMP_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of jumps; units stand in the names."""
 RESONANCE_COLUMNS = (
     "direction",
     "speed_rpm",
@@ -245,6 +246,7 @@ RESONANCE_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of peaks and the modes nearest to them; units stand in the names."""
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
@@ -340,7 +342,7 @@ def _after_irregular(piece: Piece, position: int) -> bool:
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
-    """Columns that name a resonance."""
+    """Return the columns that name a resonance: its kind, order and mode."""
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,
@@ -386,7 +388,7 @@ def response_summary(response: SteadyState) -> str:
     """
     parts = [f"largest mesh force {np.abs(response.forces).max():.4g} N", response.label]
     if response.looks is not None:
-        parts.append(" from one start and ".join(map(_period_label, response.looks)) + " from another")
+        parts.append(" from one start and ".join(map(str, response.looks)) + " from another")
     parts.append(f"open for up to {100.0 * response.fractions[0].max():.0f} % of the time")
     past = float(response.past_law.max())
     if past > 0.0:
@@ -395,10 +397,6 @@ def response_summary(response: SteadyState) -> str:
     if pull > PULLS * np.abs(response.forces).max():
         parts.append(f"mesh dampers pull by up to {pull:.0f} N before flanks part")
     return ", ".join(parts)
-
-
-def _period_label(period: int) -> str:
-    return f"period-{period}" if period else "irregular"
 
 
 def sweep_summary(directions: Mapping[str, Direction]) -> str:

@@ -18,6 +18,7 @@ from facegear.motion.sweeps.sweep import Piece, collect, join_pieces, run_chunk,
 from facegear.motion.symmetries import Symmetry, mesh_images, symmetries
 
 NAMES = tuple(Piece.__dataclass_fields__)
+"""Names of the arrays of a part of a sweep."""
 MAY_LACK = (
     "leading_multiplier",
     "exponent_per_period",
@@ -48,12 +49,13 @@ _PER_PART: dict[str, tuple[int | None, ...]] = {
     **{name: (None,) * DIMENSIONS[name] for name in NAMES},
     **{f"{name}_known": (None,) for name in MAY_LACK},
 }
+"""Shape of each stored array; None stands for any length."""
 SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape in _PER_PART.items()}
 """Arrays of a file with their shapes; None is any length."""
 
 
 def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
-    """Return a chunk as arrays.
+    """Return a chunk of a sweep as arrays that a file can hold.
 
     Parameters
     ----------
@@ -76,7 +78,7 @@ def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
 
 
 def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
-    """Return the chunk that to_arrays() has stored.
+    """Read a chunk of a sweep from the arrays of to_arrays().
 
     Parameters
     ----------
@@ -284,8 +286,8 @@ def whole_sweep(
 
 
 def _on_threads(plans: Sequence[RunPlan[Jump | None]], threads: int) -> list[Jump | None]:
-    """Values of run plans that are dealt out to threads; the compiled part runs without the
-    interpreter's lock.
+    """Run plans on several threads and return their values; the compiled part runs without the interpreter's
+    lock.
     """
     count = max(threads, 1)
     with ThreadPoolExecutor(count) as pool:
@@ -330,5 +332,6 @@ def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
 
 
 def _distance(jump: Jump, speed: float) -> float:
+    """Return by how much a speed lies outside a jump's interval, rpm."""
     low, high = sorted((jump.before.speed, jump.after.speed))
     return max(low - speed, speed - high, 0.0)

@@ -103,7 +103,7 @@ class Closure:
         return [Node("whole", str(path))]
 
     def search(self, nodes: Iterable[Node]) -> set[Node]:
-        """Find all that some nodes reach, with themselves.
+        """Find all definitions that some nodes reach through the names they use, these nodes included.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ class Closure:
         return closure_nodes
 
     def digest(self, nodes: Iterable[Node]) -> str:
-        """Compute the hash of what counts.
+        """Compute the hash of the code of all nodes.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class Closure:
         return digest.hexdigest()[:16]
 
     def names(self, nodes: Iterable[Node]) -> set[str]:
-        """Name the statements among some nodes.
+        """Name what the statements among some nodes bind.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Closure:
         return {node.module for node in nodes if self._modules[node.module]}
 
     def _beside_hash(self, package: str) -> bytes:
-        """Hash of the files that count with a package."""
+        """Return the hash of the files that count with a package, such as templates and kernel sources."""
         if package not in self._beside:
             folder, digest = self.root.joinpath(*package.split(".")), hashlib.sha256()
             for path in sorted(path for pattern in BESIDE for path in folder.glob(pattern)):
@@ -228,6 +228,7 @@ class Closure:
         yield from (Node("whole", origin) for _, origin, name in module.source.imports if name == "*")
 
     def _load_module(self, name: str, module: _Module) -> Iterator[Node]:
+        """Yield all that runs when a module is loaded: parents, imports and statements with effects."""
         parents = name.split(".") if not module.is_script else []
         yield from (Node("loaded", ".".join(parents[:n])) for n in range(1, len(parents)))
         yield from self._load_imports(module.source.imports)
@@ -244,7 +245,9 @@ class Closure:
                 yield Node("loaded", f"{origin}.{name}")
 
     def _resolve_use(self, name: str, module: _Module, statement: Statement, use: str) -> Iterator[Node]:
-        """Yield what a name may mean in a statement."""
+        """Yield the nodes to which a name that a statement uses may refer: definitions, imports or whole
+        modules.
+        """
         if use == WHOLE_MODULE:
             yield Node("whole", name)
         elif use.startswith(NAMED_MODULE):
@@ -286,7 +289,7 @@ class Closure:
             yield Node("whole", name)
 
     def _module(self, name: str) -> _Module | None:
-        """The module of a name, None if there is no such file."""
+        """Return the module of a dotted name; None if there is no such file."""
         if name not in self._modules:
             base = self.root.joinpath(*name.split("."))
             alone, package = base.with_suffix(".py"), base / "__init__.py"
@@ -295,6 +298,7 @@ class Closure:
         return self._modules[name]
 
     def _read(self, path: Path, name: str, is_script: bool = False) -> _Module:
+        """Read a module and index its statements and imports by the names that they bind."""
         self._states[str(path)] = _state(str(path))
         source = source_of(path, name)
         statements: dict[str, list[int]] = {}
@@ -308,5 +312,6 @@ class Closure:
 
 
 def _state(path: str) -> tuple[int, int]:
+    """Return size and time of change of a file."""
     status = os.stat(path)
     return status.st_size, status.st_mtime_ns

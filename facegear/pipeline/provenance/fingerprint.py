@@ -120,6 +120,7 @@ def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
 
 
 def _closure(root: str | Path) -> Closure:
+    """Return the closure of a folder, read anew if one of its files changed."""
     key = str(root)
     if key not in _closures or not _closures[key].is_current:
         _closures[key] = Closure(key)

@@ -15,6 +15,7 @@ from facegear.io import documents
 from facegear.io.atomic import MANIFEST_SUFFIX, sha256
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pandas", "snakemake")
+"""Libraries whose versions a manifest names, as far as they were imported."""
 
 
 def write_manifest(
@@ -27,10 +28,28 @@ def write_manifest(
     summary: str,
     rebuild: str,
 ) -> None:
-    """Write versions, config slice, fingerprint, machine, time and the checksum of every input and output.
+    """Write versions, slice of the config, fingerprint, machine, time and the checksum of every input and
+    output.
 
-    Inputs are named as the folder of the manifest counts them. `rebuild`: command that makes a target again;
-    it is stored with the folder of the outputs behind it and lacks only the name of a file.
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    outputs : iterable of str or Path
+        Files that the stage made.
+    inputs : iterable of str or Path
+        Files that it read; their paths are stored relative to the manifest's folder.
+    params : mapping
+        Slice of the config as `needs`, and the fingerprint of the stage as `code`.
+    rule : str
+        Name of the rule.
+    seconds : float
+        Time that the stage took, s.
+    summary : str
+        Summary of the results in one line.
+    rebuild : str
+        Command that makes a target again; it is stored with the folder of the outputs behind it and lacks
+        only the name of a file.
     """
     documents.write(
         path,
@@ -54,7 +73,13 @@ def write_manifest(
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python and of those of LIBRARIES that were imported."""
+    """Return the versions of Python and of the libraries of LIBRARIES that were imported.
+
+    Returns
+    -------
+    dict of str to str
+        Version by name.
+    """
     versions = {"python": platform.python_version()}
     for name in LIBRARIES:
         module = name.replace("scikit-fem", "skfem")
@@ -72,11 +97,24 @@ Manifest = Mapping[str, Any]
 def current_manifest(
     path: Path, needs: Callable[[str], Mapping[str, Any] | None], code: Callable[[str], str]
 ) -> Manifest | None:
-    """The manifest of a stored file if the file is up to date, else None.
+    """Return the manifest of a stored file if the file is up to date.
 
-    It is if its stage ran with the same slice of the config and the same code, on inputs that are the same
-    files now and up to date themselves. `needs` and `code` give slice and stage fingerprint of a rule; None
-    for a rule that they do not know. The bytes of the file itself are left to its reader.
+    A file is up to date if its stage ran with the same slice of the config and the same code, on inputs that
+    have not changed and are up to date themselves. The bytes of the file itself are left to its reader.
+
+    Parameters
+    ----------
+    path : Path
+        The stored file.
+    needs : callable
+        Slice of the config by rule; None for a rule that it does not know.
+    code : callable
+        Fingerprint of a stage by rule.
+
+    Returns
+    -------
+    Manifest or None
+        The manifest; None if the file is out of date or has none.
     """
     manifest = _manifest(path)
     if manifest is None:
@@ -103,7 +141,7 @@ def current_manifest(
 
 
 def _manifest(path: Path) -> Manifest | None:
-    """The readable manifest that covers a file; None where its folder cannot be read."""
+    """Return the readable manifest that covers a file; None if there is none or its folder cannot be read."""
     try:
         candidates = sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}"))
     except OSError:
@@ -128,11 +166,24 @@ def rebuild_command(
     config: Mapping[str, Any],
     directory: str | Path | None,
 ) -> str:
-    """A command line for a shell, to which only the target has to be added.
+    """Return a command line for a shell, to which only the target has to be added.
 
-    `directory`: what `--directory` named, None without that option. With it all paths are absolute, so that
-    the command works in any folder; without it they count from the current folder. `config`: values of
-    `--config`.
+    Parameters
+    ----------
+    snakefile : str or Path
+        Snakefile of the run.
+    configfiles : sequence of str or Path
+        Config files of the run.
+    config : mapping
+        Values of `--config` by key.
+    directory : str, Path or None
+        Folder that `--directory` named, None without that option. With it all paths are absolute, so that the
+        command works in any folder; without it they are relative to the current folder.
+
+    Returns
+    -------
+    str
+        The command line.
     """
     folder = Path.cwd()
     path_text = os.path.relpath if directory is None else os.path.abspath
@@ -152,5 +203,5 @@ def rebuild_command(
 
 
 def _plain(value: Any) -> str:
-    """A value as Snakemake reads it from its command line, which is YAML."""
+    """Return a value as text that Snakemake reads from its command line, which is YAML."""
     return value if isinstance(value, str) else json.dumps(value)

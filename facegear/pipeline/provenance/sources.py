@@ -59,7 +59,7 @@ def remember(file: Path) -> None:
 
 
 def source_of(path: Path, module: str) -> Source:
-    """Return what counts of a file.
+    """Read statements and imports of a file, without what does not affect its code.
 
     Parameters
     ----------
@@ -81,6 +81,7 @@ def source_of(path: Path, module: str) -> Source:
 
 
 def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequence[str]]) -> Source:
+    """Build a Source from the lists of its stored form."""
     return Source(
         tuple(
             Statement(tuple(names), code, tuple(uses), _imports(inner), runs, signature, tuple(annotated))
@@ -91,10 +92,12 @@ def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequ
 
 
 def _imports(lists: Iterable[Sequence[str]]) -> tuple[tuple[str, str, str], ...]:
+    """Build imports from the lists of their stored form."""
     return tuple((bound, module, name) for bound, module, name in lists)
 
 
 @cache
 def _version() -> str:
+    """Return Python's version with a digest of the modules that read sources."""
     texts = b"".join(Path(__file__).with_name(name).read_bytes() for name in READERS)
     return f"{sys.version_info[:2]} {hashlib.sha256(texts).hexdigest()}"

@@ -77,6 +77,7 @@ class Part:
 
 
 def _flatten_paths(paths: Paths) -> list[str]:
+    """Return all paths of a job in one list."""
     path_lists = [[path] if isinstance(path, str) else [*path] for path in paths.values()]
     return [str(path) for path_list in path_lists for path in path_list]
 
@@ -114,7 +115,7 @@ def parts_of(snakemake: Any) -> list[Part]:
 
 
 def _ending(end: str, paths: Paths) -> Paths:
-    """Paths whose names have an ending, under the names without it."""
+    """Return the paths whose names end in `end`, by the names without this ending."""
     return {name.removesuffix(end): path for name, path in paths.items() if name.endswith(end)}
 
 
@@ -225,6 +226,7 @@ def record_part(part: Part) -> Iterator[StageRun]:
 
 @contextmanager
 def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
+    """End a job with one line in its log in place of a traceback, for errors that a user may meet."""
     try:
         yield
     except (FacegearError, OSError) as error:
@@ -253,11 +255,13 @@ class _CopiedStream:
         self.log, self.terminal = log, sys.stderr
 
     def write(self, text: str) -> int:
+        """Write text to the terminal and to the log."""
         with suppress(OSError):  # a full disk must not keep the message from the terminal
             self.log.write(text.encode())
         return self.terminal.write(text)
 
     def flush(self) -> None:
+        """Flush the terminal."""
         self.terminal.flush()
 
 

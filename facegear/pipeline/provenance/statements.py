@@ -61,7 +61,7 @@ class Source:
 
 
 def read_source(text: bytes, module: str, is_package: bool) -> Source:
-    """Read what counts of a module.
+    """Read statements and imports of a module, without what does not affect its code.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class _Scope:
     for_checkers: set[str]
 
     def counted_uses(self, part: Part) -> tuple[str, ...]:
-        """Names that count among those of a part, sorted."""
+        """Return the names that a part uses and that count for its fingerprint, sorted."""
         local = {name for name, *_ in part.imports}
         counted_names = set()
         for use in part.uses:
@@ -136,13 +136,14 @@ class _Scope:
         return tuple(sorted(counted_names))
 
     def code(self, part: Part) -> str:
-        """Hash of the code of a part, with what the names are that it has from elsewhere."""
+        """Return the hash of a part's code, with the meaning of each name that it has from elsewhere."""
         roots = {use.removeprefix(POSSIBLE_NAME).partition(".")[0] for use in part.uses}
         origins = [f"{name} {self.foreign[name]}" for name in sorted(roots & self.foreign.keys())]
         return hashlib.sha256("\n".join([*origins, *part.code]).encode()).hexdigest()[:16]
 
 
 def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> Statement:
+    """Return the record of a module's statement: names, code, uses and imports."""
     signature = Part()
     if isinstance(statement, Function):
         signature = walk.collect_annotations(statement)
@@ -158,7 +159,7 @@ def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> 
 
 
 def _names(statement: ast.stmt, part: Part) -> set[str]:
-    """Names that a statement of the module binds or, as `table[key] = value` does, changes."""
+    """Return the names that a statement of the module binds or, as `table[key] = value` does, changes."""
     match statement:
         case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
             return {statement.name}

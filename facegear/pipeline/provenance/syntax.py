@@ -27,10 +27,12 @@ FIELDS = {
     for kind in vars(ast).values()
     if isinstance(kind, type) and issubclass(kind, ast.AST)
 }
+"""Fields of each kind of syntax node that affect what code does."""
 Import = tuple[str, str, str]
 """Name that an import binds, module, and name in the module (empty for the module itself)."""
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 SCOPES = (ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+"""Kinds of expressions with a scope of their own."""
 
 
 def is_in_packages(module: str) -> bool:
@@ -145,7 +147,8 @@ class Walk:
         self.in_class = False
 
     def collect(self, statement: ast.stmt) -> Part:
-        """Return code and names of a statement.
+        """Return the code of a statement without docstrings and comments, and the names that it binds and
+        uses.
 
         Parameters
         ----------
@@ -179,7 +182,7 @@ class Walk:
         return part
 
     def visit(self, node: ast.AST) -> None:
-        """Note a node and all in it.
+        """Record a syntax node and all nodes inside it.
 
         Parameters
         ----------
@@ -202,6 +205,7 @@ class Walk:
                 self.part.code.append(repr(value))
 
     def _visit_list(self, values: Sequence[object]) -> None:
+        """Record a list of nodes and plain values, without statements that have no effect."""
         self.part.code.append("[")
         for value in values:
             if isinstance(value, ast.AST):
@@ -212,6 +216,7 @@ class Walk:
         self.part.code.append("]")
 
     def _visit_name(self, node: ast.Name) -> None:
+        """Record a name as used or as bound."""
         self.part.code.append(node.id)
         if isinstance(node.ctx, ast.Load):
             self._use(node.id)
@@ -219,6 +224,7 @@ class Walk:
             self.part.bound.add(node.id)
 
     def _visit_attribute(self, node: ast.Attribute) -> None:
+        """Record a dotted name, and each part of it as used."""
         chain: list[str] = []
         root: ast.expr = node
         while isinstance(root, ast.Attribute):
@@ -232,11 +238,13 @@ class Walk:
             self.visit(root)
 
     def _use(self, name: str) -> None:
+        """Record the use of a name; a dynamic look-up uses the whole module."""
         if name in DYNAMIC or name == "sys.modules" or name.startswith("sys.modules."):
             self.part.uses.add(WHOLE_MODULE)
         self.part.uses.add(name)
 
     def _visit_call(self, node: ast.Call) -> None:
+        """Record a call; an import by name uses the named module, or anything if the name is computed."""
         if "import_module" in (getattr(node.func, "id", ""), getattr(node.func, "attr", "")):
             match node.args:
                 case [ast.Constant(str(module))] if is_in_packages(module):
@@ -249,9 +257,11 @@ class Walk:
         self._visit_list(node.keywords)
 
     def _visit_constant(self, node: ast.Constant) -> None:
+        """Record a literal value."""
         self.part.code.append(repr(node.value))
 
     def _visit_import(self, node: ast.Import | ast.ImportFrom) -> None:
+        """Record an import, from these packages as a dependency, else as a bound name."""
         for binding in find_imports(node, self.package):
             self.part.code.append(repr(binding))
             if is_in_packages(binding[1]):
@@ -260,6 +270,7 @@ class Walk:
                 self.part.bound.add(binding[0])
 
     def _visit_if(self, node: ast.If) -> None:
+        """Record a condition; the body of `if TYPE_CHECKING` never runs and is left out."""
         if is_guard(node, "TYPE_CHECKING"):
             self._visit_list(node.orelse)
             return
@@ -269,7 +280,9 @@ class Walk:
         self._visit_list(node.orelse)
 
     def _visit_annotated(self, node: ast.AnnAssign) -> None:
-        """A field of a class counts with its annotation; other variables do not."""
+        """Record an annotated assignment; a field of a class counts with its annotation, other variables
+        without.
+        """
         self.part.code.append("AnnAssign")
         self.visit(node.target)
         if self.in_class:
@@ -278,19 +291,21 @@ class Walk:
             self.visit(node.value)
 
     def _visit_annotation(self, node: ast.expr) -> None:
-        """Names in strings may be those of types, or the values of a `Literal`."""
+        """Record the names in an annotation; strings in it may name types or be values of a `Literal`."""
         self.visit(node)
         for inner in ast.walk(node):
             if isinstance(inner, ast.Constant) and isinstance(inner.value, str):
                 self.part.uses |= {f"{POSSIBLE_NAME}{word}" for word in re.findall(r"[\w.]+", inner.value)}
 
     def _visit_annotations(self, node: Function) -> None:
+        """Record the annotations of a function's arguments and result."""
         for argument in _arguments(node.args):
             if argument.annotation:
                 self.part.code.append(argument.arg)
                 self._visit_annotation(argument.annotation)
 
     def _visit_class(self, node: ast.ClassDef) -> None:
+        """Record a class with decorators, bases and body; names that its body binds are its own."""
         self.part.code.append(f"class {node.name}")
         self.part.bound.add(node.name)
         for part in (node.decorator_list, node.bases, node.keywords):
@@ -300,7 +315,9 @@ class Walk:
         self.in_class = outer
 
     def _visit_function(self, node: Function) -> None:
-        """Names that the outermost function binds are its own everywhere in it, unless it says `global`."""
+        """Record a function; names that the outermost function binds are local everywhere in it, unless
+        declared `global`.
+        """
         self.part.code.append(f"{type(node).__name__} {node.name}")
         self.part.bound.add(node.name)
         self._visit_list(node.decorator_list)
@@ -318,12 +335,14 @@ class Walk:
         outer.bound |= part.bound
 
     def _visit_lambda(self, node: ast.Lambda) -> None:
+        """Record a lambda; its arguments are bound names."""
         self.part.code.append("lambda")
         self._visit_signature(node.args)
         self.part.bound |= {argument.arg for argument in _arguments(node.args)}
         self.visit(node.body)
 
     def _visit_signature(self, node: ast.arguments) -> None:
+        """Record the arguments of a function with their kinds and defaults."""
         self.part.code.append(f"{len(node.posonlyargs)} {node.vararg is not None} {len(node.kwonlyargs)}")
         self.part.code += [argument.arg for argument in _arguments(node)]
         for default in (*node.defaults, *node.kw_defaults):
@@ -333,6 +352,7 @@ class Walk:
                 self.visit(default)
 
     def _visit_caught(self, node: ast.ExceptHandler) -> None:
+        """Record an except clause; its name is bound."""
         self.part.bound.add(node.name or "")
         self.part.code.append(f"except {node.name}")
         if node.type:
@@ -340,6 +360,7 @@ class Walk:
         self._visit_list(node.body)
 
     def _visit_pattern(self, node: ast.MatchAs | ast.MatchStar | ast.MatchMapping) -> None:
+        """Record a pattern of a match statement; the name that it captures is bound."""
         name = node.rest if isinstance(node, ast.MatchMapping) else node.name
         self.part.bound.add(name or "")
         self.part.code.append(f"{type(node).__name__} {name}")
@@ -365,20 +386,23 @@ METHODS: Mapping[type, Callable[..., None]] = {
     ast.MatchStar: Walk._visit_pattern,
     ast.MatchMapping: Walk._visit_pattern,
 }
+"""Method of Walk that records each kind of node; other kinds are recorded field by field."""
 
 
 def _last_name(decorator: ast.expr) -> str:
+    """Return the last part of a decorator's dotted name."""
     node = decorator.func if isinstance(decorator, ast.Call) else decorator
     return str(getattr(node, "attr", getattr(node, "id", "")))
 
 
 def _arguments(node: ast.arguments) -> list[ast.arg]:
+    """Return all arguments of a signature, variadic ones last."""
     variadic = [argument for argument in (node.vararg, node.kwarg) if argument]
     return [*node.posonlyargs, *node.args, *node.kwonlyargs, *variadic]
 
 
 def _local_names(function: Function) -> set[str]:
-    """Names that a function binds in its own scope."""
+    """Return the names that a function binds in its own scope."""
     names = {argument.arg for argument in _arguments(function.args)}
     elsewhere: set[str] = set()
     todo: list[ast.AST] = [*function.body]

@@ -122,6 +122,7 @@ KEYWORDS_TEXT = """
         `size`: width and height in inches; `labels`: other words for texts of the figure (axes, titles,
         legend), by the text that stands there. Raises FacegearError for a text that the figure does not have.
         """
+"""Text added to the docstring of a method that draws a figure."""
 
 
 def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.outcome import Outcome
-from facegear.pipeline.reported import REPORT_TABLES, asked_for, table_name
+from facegear.pipeline.report_tables import REPORT_TABLES, asked_for, table_name
 from facegear.pipeline.results.base import Result, StageOutput
 from facegear.pipeline.results.store import Store
 from facegear.pipeline.run import call
@@ -157,6 +157,7 @@ class Chain:
         )
 
     def _read_source(self, source: From) -> Any:
+        """Return the content of an earlier stage's file, or a list of contents for several cases."""
         parts = [
             self._of(wildcards.get("case")).part(source.stage, source.file, _without_case(wildcards))
             for wildcards in source.file_wildcards(self.case)
@@ -164,7 +165,7 @@ class Chain:
         return parts if source.each_wildcards else parts[0]
 
     def _of(self, case: str | None) -> "Chain":
-        """The chain of another case of the same config; its own without a name."""
+        """Return the chain of another case of the same config; this chain without a name."""
         chain = self.values["case"]
         if case is None or case == chain:
             return self
@@ -177,6 +178,7 @@ class Chain:
 
 
 def _without_case(wildcards: Wildcards) -> dict[str, str]:
+    """Return wildcards without that of the case."""
     return {name: text for name, text in wildcards.items() if name != "case"}
 
 
@@ -237,6 +239,7 @@ class _NotKnownError(Exception):
 
 
 def _refuse_to_compute() -> Never:
+    """Raise the error that stands for a result which is not stored."""
     raise _NotKnownError
 
 

@@ -157,12 +157,12 @@ class ContactResult(Result):
         return pressure_dataset(self.content["pressure"])
 
     @fit_for_paper
-    def plot(self, what: str = "pattern") -> "Figure":
+    def plot(self, figure: str = "pattern") -> "Figure":
         """`pattern`: largest pressure over a pitch; `curves`: transmission error, stiffness, load shares.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -170,7 +170,7 @@ class ContactResult(Result):
         Figure
             The figure.
         """
-        if require_choice(what, ("pattern", "curves"), "plot") == "curves":
+        if require_choice(figure, ("pattern", "curves"), "plot") == "curves":
             return contact_curves(self.content["ltca"])
         return contact_pattern(self.content["pressure"])
 
@@ -231,12 +231,12 @@ class StiffnessResult(Result):
         return pd.DataFrame({"pinion_angle_deg": pitch * cycles, "k_n_per_m": stiffness})
 
     @fit_for_paper
-    def plot(self, what: str = "curve") -> "Figure":
+    def plot(self, figure: str = "curve") -> "Figure":
         """`curve` over a mesh period, or amplitudes of its `harmonics`.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -244,7 +244,7 @@ class StiffnessResult(Result):
         Figure
             The figure.
         """
-        if require_choice(what, ("curve", "harmonics"), "plot") == "curve":
+        if require_choice(figure, ("curve", "harmonics"), "plot") == "curve":
             return stiffness_curve(self.content["tvms"])
         return harmonic_amplitudes(self.content["spectrum"])
 

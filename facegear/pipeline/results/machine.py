@@ -8,7 +8,8 @@ from facegear.build.machine_layout import lumped_sections
 from facegear.errors import FacegearError
 from facegear.pipeline.results.base import Result, fit_for_paper
 from facegear.report.figures.description import Figure
-from facegear.report.figures.machine import mode_shapes, shafts_figures
+from facegear.report.figures.machine import mode_shapes
+from facegear.report.figures.shafts import shafts_figures
 from facegear.report.figures.turning_machine import shaft_order_figure
 
 

@@ -73,6 +73,7 @@ class ResponseResult(Result):
 
 
 KEYS = ["direction", "speed_rpm"]
+"""Columns by which rows of a sweep belong together."""
 NO_ITEM = "machine"
 """Name in place of body or mesh, in rows that belong to the whole machine."""
 
@@ -214,7 +215,7 @@ class SweepResult(Result):
     @fit_for_paper
     def plot(
         self,
-        what: str = "meshes",
+        figure: str = "meshes",
         label: str = "as configured",
         beside: "Mapping[str, SweepResult] | None" = None,
     ) -> "Figure":
@@ -225,7 +226,7 @@ class SweepResult(Result):
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
         label : str
             Name of this result in the legend.
@@ -237,12 +238,12 @@ class SweepResult(Result):
         Figure
             The figure.
         """
-        draw = SWEEP_FIGURES[require_choice(what, tuple(SWEEP_FIGURES), "plot")]
+        draw = SWEEP_FIGURES[require_choice(figure, tuple(SWEEP_FIGURES), "plot")]
         teeth = self.values["tooth_pair"]["pinion_teeth"]
         machine = drawn_machine(self.values["transmission"], teeth)
         if not beside:
             return draw(self.content, machine)
-        require_choice(what, ("meshes",), "plot beside other sweeps")
+        require_choice(figure, ("meshes",), "plot beside other sweeps")
         require_answers(beside, SweepResult)
         sweeps = {name: result.content["sweep"] for name, result in {label: self, **beside}.items()}
         meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.pinions_shown]
@@ -253,6 +254,7 @@ class SweepResult(Result):
 
 
 FIGURES = ("amplitudes", "fractions", "multipliers")
+"""Names of the figures of branches."""
 
 
 class BranchesResult(Result):
@@ -365,12 +367,12 @@ class BranchesResult(Result):
         return self.content["swept"].copy()
 
     @fit_for_paper
-    def plot(self, what: str = "amplitudes", branch: int = 0) -> "Figure":
+    def plot(self, figure: str = "amplitudes", branch: int = 0) -> "Figure":
         """Draw `amplitudes` over speed, `fractions` of random starts, or the `multipliers` of one branch.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
         branch : int
             Number of the branch, for `multipliers`.
@@ -380,10 +382,10 @@ class BranchesResult(Result):
         Figure
             The figure.
         """
-        require_choice(what, FIGURES, "plot")
-        if what == "fractions":
+        require_choice(figure, FIGURES, "plot")
+        if figure == "fractions":
             return fractions(self.content["coexistence"])
-        if what == "multipliers":
+        if figure == "multipliers":
             return multipliers(self.content["multipliers"], branch)
         meshes = typical_meshes(self.values["transmission"]["pinions"], self.content["branches"]["mesh"])
         speed = self.values["dynamics"]["speed_rpm"]

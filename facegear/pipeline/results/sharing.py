@@ -7,18 +7,15 @@ import pandas as pd
 from facegear.errors import FacegearError, require_choice
 from facegear.pipeline.results.base import Result, fit_for_paper, require_answers
 from facegear.report.figures.description import Figure
-from facegear.report.figures.sharing import (
-    hunting_figure,
-    sensitivity_figure,
-    sharing_figure,
-    sharing_map_figure,
-)
+from facegear.report.figures.sharing import hunting_figure, sensitivity_figure, sharing_figure
+from facegear.report.figures.sharing_map import sharing_map_figure
 from facegear.sharing.tables import collect_tables
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 STUDY = "compared"
+"""Name under which compared machines stand in tables, as points of one study."""
 
 
 class LoadSharingResult(Result):

@@ -25,6 +25,7 @@ from facegear.pipeline.stage import File, Wildcards
 from facegear.pipeline.table import STAGES
 
 ROOT = Path(__file__).parents[3]
+"""Folder of the packages, whose code fingerprints are taken from."""
 MANIFEST = "partial.provenance.json"
 """Record beside the files of a stage; it is written last."""
 COMMAND = "facegear report"
@@ -124,11 +125,13 @@ class PartialResults:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _subfolder(self, stages: list[str], key: str) -> Path:
+        """Return the folder of a stage's results, named by its needs and the code of all stages."""
         codes = [stage_fingerprint(STAGES[stage].functions, ROOT) for stage in stages]
         digest = hashlib.sha256("\n".join([key, *codes]).encode()).hexdigest()
         return self.folder / f"{stages[0]}_{digest[:16]}"
 
     def _keep(self, subfolder: Path, name: str, parts: Mapping[str, Any], summary: str, start: float) -> None:
+        """Write the parts of a stage with their manifest."""
         for file, content in parts.items():
             write_part(str(subfolder / file), content)
         seconds = time.perf_counter() - start
@@ -137,6 +140,7 @@ class PartialResults:
 
 
 def _name(part: str, file: File) -> str:
+    """Return the file name of a part."""
     return part + Path(file.path).suffix
 
 
@@ -252,11 +256,12 @@ class Store:
         return self.outputs[key]
 
     def _key(self, name: str, part: tuple[str, ...], values: Values) -> str:
-        """Everything of the config that a part of a stage depends on, as text."""
+        """Return all values of the config on which a part of a stage depends, as text."""
         needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
         return json.dumps([name, part, needs])
 
     def _read_stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
+        """Return the stored output of a stage if it is complete and up to date, else None."""
         summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
@@ -267,6 +272,7 @@ class Store:
         return None if content is None else StageOutput(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
+        """Return the manifest of a file if it is up to date, else None."""
         return current_manifest(
             path,
             lambda rule: stage_needs(rule, values) if rule in STAGES else None,

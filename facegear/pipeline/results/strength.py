@@ -82,12 +82,12 @@ class RootStressResult(Result):
         )
 
     @fit_for_paper
-    def plot(self, what: str = "passage") -> "Figure":
+    def plot(self, figure: str = "passage") -> "Figure":
         """Root stress over a tooth's `passage` through the mesh, or along the `face`.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -95,7 +95,7 @@ class RootStressResult(Result):
         Figure
             The figure.
         """
-        if require_choice(what, ("passage", "face"), "plot") == "passage":
+        if require_choice(figure, ("passage", "face"), "plot") == "passage":
             return passage_figure(self.content["passage"])
         return along_face_figure(self.content["along_face"])
 
@@ -199,12 +199,12 @@ class RatingResult(Result):
         return self.content["damage"].copy()
 
     @fit_for_paper
-    def plot(self, what: str = "life") -> "Figure":
+    def plot(self, figure: str = "life") -> "Figure":
         """Every bin of the duty cycle beside the stress that may be repeated so often, or its `damage`.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -212,7 +212,7 @@ class RatingResult(Result):
         Figure
             The figure.
         """
-        if require_choice(what, ("life", "damage"), "plot") == "life":
+        if require_choice(figure, ("life", "damage"), "plot") == "life":
             return life(self.content["rating"], self.content["damage"], self.content["curves"])
         return damage_by_bin(self.content["rating"], self.content["damage"])
 
@@ -283,13 +283,13 @@ class FrictionResult(Result):
         return self.content["map"].copy()
 
     @fit_for_paper
-    def plot(self, what: str = "path") -> "Figure":
+    def plot(self, figure: str = "path") -> "Figure":
         """`path`: sliding and temperature along the path of contact; `flank`: loss and temperature over the
         flank; `efficiency`: over torque and speed.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -297,9 +297,9 @@ class FrictionResult(Result):
         Figure
             The figure.
         """
-        if require_choice(what, ("path", "flank", "efficiency"), "plot") == "path":
+        if require_choice(figure, ("path", "flank", "efficiency"), "plot") == "path":
             return along_path(self.content["local"])
-        if what == "flank":
+        if figure == "flank":
             return over_flank(self.content["local"], self.content["pressure"])
         return efficiency_map(self.content["map"])
 

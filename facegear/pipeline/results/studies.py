@@ -209,6 +209,7 @@ def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any
 
 
 TOLERANCE_KINDS = ("distributions", "importance", "scatter")
+"""Names of the figures of tolerances."""
 
 
 class LoadMapResult(Result):
@@ -316,6 +317,7 @@ class TolerancesResult(Result):
 
 
 SEARCH_KINDS = ("front", "hypervolume")
+"""Names of the figures of a search."""
 
 
 class SearchResult(Result):

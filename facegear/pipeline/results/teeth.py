@@ -42,12 +42,12 @@ class GeometryResult(Result):
         return {"geometry": self.table()}
 
     @fit_for_paper
-    def plot(self, what: str = "pair") -> "Figure":
+    def plot(self, figure: str = "pair") -> "Figure":
         """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path.
 
         Parameters
         ----------
-        what : str
+        figure : str
             Kind of the figure, one of those above.
 
         Returns
@@ -56,12 +56,13 @@ class GeometryResult(Result):
             The figure.
         """
         record, flanks = self.content["pair"], self.content["flanks"]
-        if require_choice(what, ("pair", "sections", "separation"), "plot") == "separation":
+        if require_choice(figure, ("pair", "sections", "separation"), "plot") == "separation":
             return separation(record, flanks, self.content["contact"])
-        return tooth_pair(record, flanks) if what == "pair" else tooth_sections(record, flanks)
+        return tooth_pair(record, flanks) if figure == "pair" else tooth_sections(record, flanks)
 
 
 def _sections(record: dict) -> list[tuple[str, dict]]:
+    """Return a record and each mapping inside it, with their names."""
     inner = [(name, value) for name, value in record.items() if isinstance(value, dict)]
     return [("", record), *inner]
 

@@ -14,7 +14,7 @@ from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.machine_conditions import machine_loads
 from facegear.pipeline.needs import resolved_needs
 from facegear.pipeline.provenance.manifest import versions
-from facegear.pipeline.reported import (
+from facegear.pipeline.report_tables import (
     REPORT_TABLES,
     asked_for,
     outlook_in_words,
@@ -196,6 +196,7 @@ class WholeCase:
         return paths
 
     def _stages_made(self) -> list[Stage]:
+        """Return the stages that the config asks for."""
         return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
 
     def _computable(self, stages: list[Stage]) -> list[Stage]:
@@ -212,6 +213,7 @@ class WholeCase:
         return [stage for stage in stages if stage.name not in self.failures]
 
     def _note_failure(self, name: str, reason: str) -> None:
+        """Store and announce that a stage could not be computed; a known reason is not repeated."""
         is_known = reason in self.failures.values()
         self.failures[name] = reason
         self.on_stage(name, f"{NOT_COMPUTED}: {'for the same reason' if is_known else reason}")
@@ -228,6 +230,7 @@ class WholeCase:
         return output
 
     def _page(self, folder: Path, stages: list[Stage]) -> str:
+        """Write the report from the outputs of the given stages."""
         for stage in stages:
             self._output(stage)
         table_files = reported_tables(self.chain.case)
@@ -279,20 +282,24 @@ class WholeCase:
                 raise
 
     def _part(self, stage: str, file: str) -> Any:
+        """Return a part of a stage; None where it is not asked for or has failed."""
         is_there = asked_for(stage, self.chain.case) and stage not in self.failures
         return self.chain.part(stage, file) if is_there else None
 
     def _view(self) -> Any:
+        """Return the view of the pair in mesh, if contact was computed."""
         if (loads := self._part("contact", "pressure")) is None:
             return None
         stress, friction = self._part("root_stress", "stress"), self._part("lubrication", "local")
         return shown_pair(self.chain.values, self.chain.part("contact", "ltca"), loads, stress, friction)
 
     def _bodies(self) -> Any:
+        """Return the view of mode shapes, if gears that bend were computed."""
         if (shapes := self._part("gear_bodies", "shapes")) is None:
             return None
         return body_view(self.chain.part("gear_bodies", "modes"), shapes)
 
 
 def _is_reported(stage: Stage) -> bool:
+    """Whether the report shows a table or a figure of a stage."""
     return stage.name in REPORT_TABLES or (stage.figures is not None and stage.name not in NOT_REPORTED)

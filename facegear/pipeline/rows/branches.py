@@ -1,10 +1,11 @@
 """Branches of periodic motions."""
 
 from facegear.pipeline import arguments, machine_conditions
-from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, SPEED, SWEEP
+from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
+"""Needs of the stages that follow branches."""
 
 ROWS = (
     Stage(
@@ -103,3 +104,4 @@ ROWS = (
         minutes=60,
     ),
 )
+"""Stages that follow branches of periodic motions."""

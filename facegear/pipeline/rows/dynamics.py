@@ -1,7 +1,7 @@
 """The machine in motion: response at one speed, and the speed sweep."""
 
-from facegear.pipeline import arguments, asked, contact_studies
-from facegear.pipeline.rows.shared import (
+from facegear.pipeline import arguments, conditions, contact_studies
+from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
     HARMONICS,
@@ -30,7 +30,7 @@ ROWS = (
             "multipliers": File("dynamics/multipliers.csv", may_be_empty=True),
             "bearings": File("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
         },
-        condition=asked.machine,
+        condition=conditions.machine,
     ),
     Stage(
         name="shaft_orders",
@@ -127,7 +127,7 @@ ROWS = (
             needs={"transmission": "transmission", "pinion_teeth": "tooth_pair.pinion_teeth"},
             memory_mb=1300,
         ),
-        condition=asked.machine,
+        condition=conditions.machine,
         memory_mb=1300,
         minutes=60,
         priority=60,
@@ -149,11 +149,12 @@ ROWS = (
             upstream={
                 **from_stage("law_loads", "loads"),
                 **from_stage("dynamics_sweep", "sweep"),
-                "others": From("dynamics_sweep", "sweep", each_wildcards=contact_studies.other_laws),
+                "other_sweeps": From("dynamics_sweep", "sweep", each_wildcards=contact_studies.other_laws),
             },
             needs={"labels": ComputedValue(contact_studies.law_labels, ("studies", "mesh_stiffness"))},
         ),
-        condition=asked.load_dependent_machine,
+        condition=conditions.load_dependent_machine,
         local=True,
     ),
 )
+"""Stages on response, sweep, orders of the turns and the loads of mesh laws."""

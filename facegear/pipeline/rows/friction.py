@@ -1,10 +1,11 @@
 """Friction, heat and film."""
 
-from facegear.pipeline import asked, contact_studies, machine_conditions
-from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, PAIR, SPEED
+from facegear.pipeline import conditions, contact_studies, machine_conditions
+from facegear.pipeline.rows.common_needs import MACHINE, MOTION_INPUTS, PAIR, SPEED
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 STORED_CONTACT = from_stage("contact", "ltca", "pressure")
+"""Tables and arrays of the contact analysis that friction takes."""
 
 PAIR_ROWS = (
     Stage(
@@ -36,10 +37,11 @@ PAIR_ROWS = (
                 "map_table": From("lubrication", "map"),
             },
         ),
-        condition=asked.friction,
+        condition=conditions.friction,
         local=True,
     ),
 )
+"""Stages on friction of the pair alone."""
 
 ROWS = (
     Stage(
@@ -84,3 +86,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on friction and loss of the machine."""

@@ -1,7 +1,17 @@
 """The machine at rest: ratings and modes."""
 
-from facegear.pipeline import asked, machine_conditions
-from facegear.pipeline.rows.shared import BODIES, FLANKS, HARMONICS, LAW, MACHINE, MESHES, PAIR, POSES, SPEED
+from facegear.pipeline import conditions, machine_conditions
+from facegear.pipeline.rows.common_needs import (
+    BODIES,
+    FLANKS,
+    HARMONICS,
+    LAW,
+    MACHINE,
+    MESHES,
+    PAIR,
+    POSES,
+    SPEED,
+)
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -49,7 +59,7 @@ ROWS = (
             upstream=from_stage("ratings", "meshes"),
             needs=MACHINE,
         ),
-        condition=asked.machine,
+        condition=conditions.machine,
         local=True,
     ),
     Stage(
@@ -69,7 +79,7 @@ ROWS = (
             "torsion": File("shafts/torsion.csv", ("body", "mass", "windup_deg"), may_be_empty=True),
         },
         figures=Figures(
-            draw="facegear.report.figures.machine:shafts_figures",
+            draw="facegear.report.figures.shafts:shafts_figures",
             names=machine_conditions.shaft_figures,
             chapter="load_sharing",
             upstream=from_stage("shafts", "bearings", "deflections"),
@@ -101,7 +111,7 @@ ROWS = (
             chapter="load_sharing",
             upstream=from_stage("operating_pose", "meshes", "loads", "as_assembled", "running"),
         ),
-        condition=asked.poses,
+        condition=conditions.poses,
         memory_mb=2000,
     ),
     Stage(
@@ -140,7 +150,7 @@ ROWS = (
             "definition": "modal.stiffness",
         },
         upstream={
-            "harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact),
+            "harmonics": From("stiffness", "harmonics", when=conditions.modes_from_contact),
             **LAW,
             **POSES,
             **BODIES,
@@ -156,7 +166,8 @@ ROWS = (
             chapter="modes",
             upstream=from_stage("modal", "frequencies", "shapes"),
         ),
-        condition=asked.machine,
+        condition=conditions.machine,
         local=True,
     ),
 )
+"""Stages on gears that bend, ratings, shafts, operating pose and modes."""

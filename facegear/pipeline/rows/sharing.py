@@ -1,7 +1,7 @@
 """Stages of load sharing among meshes."""
 
 from facegear.pipeline import arguments, machine_conditions, studies
-from facegear.pipeline.rows.shared import (
+from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
     HARMONICS,
@@ -15,6 +15,7 @@ from facegear.pipeline.rows.shared import (
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
+"""Columns that identify a point of a study."""
 
 ROWS = (
     Stage(
@@ -182,7 +183,7 @@ ROWS = (
             "reasons": File("load_sharing/sharing_map_reasons.csv", (), may_be_empty=True, text=("reason",)),
         },
         figures=Figures(
-            draw="facegear.report.figures.sharing:sharing_map_figures",
+            draw="facegear.report.figures.sharing_map:sharing_map_figures",
             names=("sharing_map",),
             chapter="load_sharing",
             upstream=from_stage("sharing_map", "curves", "inputs", "points"),
@@ -209,3 +210,4 @@ ROWS = (
         condition=machine_conditions.follows_rotation,
     ),
 )
+"""Stages on load sharing."""

@@ -1,7 +1,7 @@
 """Root stress, and safety and life under a duty cycle."""
 
-from facegear.pipeline import arguments, asked, machine_conditions
-from facegear.pipeline.rows.shared import (
+from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
     FLANKS,
@@ -17,11 +17,13 @@ from facegear.pipeline.rows.shared import (
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 GEARS = {"gears": ComputedValue(arguments.gears_met, ("transmission",))}
+"""Gears of the machine that the rating meets."""
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
+"""Root stress and contact by flank."""
 
 POSED_CONTACT = {
-    "posed": From("posed_stress", "contacts", when=asked.poses),
-    "posed_by_torque": From("posed_stress", "by_torque", when=asked.poses),
+    "posed_contacts": From("posed_stress", "contacts", when=conditions.poses),
+    "posed_by_torque": From("posed_stress", "by_torque", when=conditions.poses),
 }
 """Contact solved at the pose of every mesh."""
 
@@ -52,7 +54,7 @@ LOAD_ROWS = (
             chapter="strength",
             upstream=from_stage("root_stress", "passage", "along_face"),
         ),
-        condition=asked.root_stress,
+        condition=conditions.root_stress,
     ),
     Stage(
         name="posed_stress",
@@ -67,7 +69,7 @@ LOAD_ROWS = (
             ),
             "contacts": File("strength/posed_contacts.npz"),
         },
-        condition=asked.posed_stress,
+        condition=conditions.posed_stress,
         memory_mb=4000,
         minutes=30,
     ),
@@ -84,7 +86,7 @@ LOAD_ROWS = (
                 "strength/duty_poses.csv", "facegear.pipeline.stages.duty:COLUMNS", text=("mesh", "flank")
             )
         },
-        condition=asked.posed_rating,
+        condition=conditions.posed_rating,
         local=True,
     ),
     Stage(
@@ -103,6 +105,7 @@ LOAD_ROWS = (
         },
     ),
 )
+"""Stages on root stress, also at the operating pose, and loads of the duty cycle."""
 
 ROWS = (
     Stage(
@@ -117,7 +120,7 @@ ROWS = (
             "mesh_losses": From("machine_loss", "meshes", when=machine_conditions.scuffed_loads),
             **POSED_CONTACT,
             **POSES,
-            "duty_poses": From("duty_poses", "duty_poses", when=asked.poses),
+            "duty_poses": From("duty_poses", "duty_poses", when=conditions.poses),
         },
         files={
             "safety": File("strength/safety.csv", "facegear.strength.columns:SAFETY_FINITE"),
@@ -131,7 +134,7 @@ ROWS = (
             chapter="strength",
             upstream=from_stage("rating", "rating", "damage", "curves"),
         ),
-        condition=asked.strength,
+        condition=conditions.strength,
     ),
     Stage(
         name="dynamic_root_stress",
@@ -180,3 +183,4 @@ ROWS = (
         condition=machine_conditions.machine_stress,
     ),
 )
+"""Stages on safety, life and stress in motion."""

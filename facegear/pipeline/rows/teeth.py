@@ -1,12 +1,15 @@
 """Tooth pair: geometry, meshes, compliance, contact, stiffness."""
 
-from facegear.pipeline import arguments, asked, contact_studies
-from facegear.pipeline.rows.shared import FLANKS, PAIR
+from facegear.pipeline import arguments, conditions, contact_studies
+from facegear.pipeline.rows.common_needs import FLANKS, PAIR
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
+"""Needs of a finite-element mesh of the teeth."""
 BODY = {"body": "pinion|face_gear"}
+"""Wildcard of both bodies."""
 CONTACT_POINTS = ComputedValue(contact_studies.contact_points, ("studies",))
+"""Points of studies that have a contact analysis of their own."""
 STUDIED_CONTACT = {
     "pair": From("geometry", "pair", each_wildcards=contact_studies.contact_cases),
     **{
@@ -14,6 +17,7 @@ STUDIED_CONTACT = {
         for kind in ("ltca", "by_torque", "pressure")
     },
 }
+"""Geometry and contact of the machine and of the studied points."""
 
 ROWS = (
     Stage(
@@ -37,28 +41,28 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("geometry", "pair", "flanks", "contact"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         priority=65,
     ),
     Stage(
         name="mesh",
-        module="teeth",
+        module="tooth_bodies",
         title="Meshes of both bodies",
         needs=MESH,
         files={
             **{
                 f"{body}_{kind}": File(f"mesh/{body}.{kind}")
-                for body in asked.BODIES
+                for body in conditions.BODIES
                 for kind in ("msh", "vtu", "inp")
             },
             "quality": File("mesh/quality.csv"),
         },
-        condition=asked.contact,
+        condition=conditions.contact,
         memory_mb=2000,
     ),
     Stage(
         name="cad",
-        module="teeth",
+        module="tooth_bodies",
         title="Exact teeth for CAD",
         needs={**MESH, "case": ComputedValue(arguments.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
@@ -66,7 +70,7 @@ ROWS = (
     ),
     Stage(
         name="compliance",
-        module="teeth",
+        module="tooth_bodies",
         title="Flank compliance",
         needs={
             "tooth_pair": ComputedValue(arguments.without_gaps, ("tooth_pair",)),
@@ -102,17 +106,16 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("contact", "ltca", "pressure"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         memory_mb=4000,
         minutes=30,
         priority=80,
     ),
     Stage(
         name="stiffness",
-        module="contact",
         title="Mesh stiffness",
         needs={"mesh_stiffness": "mesh_stiffness"},
-        upstream={"ltca": From("contact", "ltca", when=asked.computed_stiffness)},
+        upstream={"ltca": From("contact", "ltca", when=conditions.computed_stiffness)},
         files={
             "tvms": File("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
             "harmonics": File(
@@ -126,7 +129,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("stiffness", "tvms", "spectrum"),
         ),
-        condition=asked.always,
+        condition=conditions.always,
         local=True,
         priority=75,
     ),
@@ -146,7 +149,7 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("topography", "points"),
         ),
-        condition=asked.measured_flanks,
+        condition=conditions.measured_flanks,
         local=True,
     ),
     Stage(
@@ -167,7 +170,7 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("tooth_errors", "curves", "orders"),
         ),
-        condition=asked.single_teeth,
+        condition=conditions.single_teeth,
         local=True,
     ),
     Stage(
@@ -186,7 +189,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("mesh_law", "law"),
         ),
-        condition=asked.load_dependent,
+        condition=conditions.load_dependent,
         memory_mb=4000,
         minutes=30,
         priority=74,
@@ -199,7 +202,7 @@ ROWS = (
             **PAIR,
             "contact": "contact",
             "torque_n_m": "mesh_stiffness.torque_n_m",
-            "tilting": ComputedValue(asked.tilting, ("transmission",)),
+            "tilting": ComputedValue(conditions.tilting, ("transmission",)),
         },
         upstream=FLANKS,
         files={
@@ -207,14 +210,14 @@ ROWS = (
             "nodes": File("poses/nodes.csv", ("unloaded_path_mm", "torque_n_m", "stiffness_n_per_m")),
             "errors": File("poses/errors.csv", ("largest", "rms"), text=("quantity", "left_out")),
         },
-        condition=asked.poses,
+        condition=conditions.poses,
         memory_mb=4000,
         minutes=30,
         priority=74,
     ),
     Stage(
         name="load_dependence",
-        module="contact",
+        module="stiffness",
         title="Stiffness against load",
         upstream=from_stage("contact", "ltca"),
         files={"table": File("stiffness/load_dependence.csv", ("definition", "torque_n_m", "mean_n_per_m"))},
@@ -224,7 +227,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("load_dependence", "table"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         local=True,
     ),
     Stage(
@@ -249,3 +252,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on geometry, meshes, compliance, contact, stiffness and pose surface."""

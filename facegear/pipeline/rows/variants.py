@@ -1,18 +1,21 @@
 """Machines with their tolerances, and designs that are searched."""
 
-from facegear.pipeline import arguments, asked, machine_conditions
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
+from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline.rows.common_needs import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
+"""Keys that decide what samples are drawn."""
 SOLID = ComputedValue(machine_conditions.solid_pair, ("transmission", "tooth_pair"))
+"""Tooth pair where bodies that bend depend on it."""
 SAMPLE_NEEDS: Needs = {
     **SHARING,
     "tolerances": CAUSES,
-    "pair": ComputedValue(arguments.pair_where(arguments.sampled_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(arguments.pair_where(arguments.sampled_contact), conditions.PAIR_SECTIONS),
     "lubrication_sections": ComputedValue(arguments.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
+"""Needs of the samples of tolerances."""
 SAMPLED_FROM = {
     **HARMONICS,
     **BODIES,
@@ -21,6 +24,7 @@ SAMPLED_FROM = {
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.sampled_contact
     ),
 }
+"""Sources of the samples of tolerances."""
 SEARCH_NEEDS: Needs = {
     **PAIR,
     **ACCURACY,
@@ -29,9 +33,10 @@ SEARCH_NEEDS: Needs = {
     "options": OPTIONS,
     "search": "search",
     "tolerances": "tolerances",
-    "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), conditions.PAIR_SECTIONS),
     "solid": SOLID,
 }
+"""Needs of the search."""
 SEARCHED_FROM = {
     **HARMONICS,
     **BODIES,
@@ -39,6 +44,7 @@ SEARCHED_FROM = {
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.searched_contact
     ),
 }
+"""Sources of the search."""
 
 ROWS = (
     Stage(
@@ -151,3 +157,4 @@ ROWS = (
         minutes=60,
     ),
 )
+"""Stages on tolerances and search."""

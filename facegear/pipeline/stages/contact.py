@@ -1,4 +1,4 @@
-"""Stages of loaded contact: contact, its studies, single teeth, mesh law, stiffness."""
+"""Stages of the loaded contact of the tooth pair, and of the laws and errors that follow from it."""
 
 from collections.abc import Mapping, Sequence
 from math import lcm
@@ -23,8 +23,6 @@ from facegear.errors import FacegearError
 from facegear.meshing.fitted_law import FlankContacts, fitted_tables, law_arrays, law_torques, level_table
 from facegear.meshing.stiffness_curve import load_table
 from facegear.meshing.stiffness_request import StiffnessRequest
-from facegear.meshing.stiffness_source import load_dependence as table_of
-from facegear.meshing.stiffness_source import stiffness_from_contact, stiffness_given
 from facegear.number_format import count_noun, format_number
 from facegear.pipeline.outcome import Outcome
 from facegear.quantities import BODIES, Body
@@ -72,7 +70,7 @@ def contact(
 
 
 def contents(analysis: ContactAnalysis) -> dict[str, Any]:
-    """Return the parts of stage contact.
+    """Return the tables and arrays that stage contact stores.
 
     Parameters
     ----------
@@ -143,6 +141,7 @@ def contact_studies(
 
 
 ORDERS = 6
+"""Number of orders of a gear's turn that the table of tooth errors lists; higher ones stay in the curves."""
 
 
 def tooth_errors(
@@ -217,10 +216,12 @@ def tooth_errors(
 
 
 def _curve_orders(curve: Array) -> Array:
+    """Return the amplitudes of the first ORDERS orders of a curve over one period."""
     return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
 
 
 DEFAULT = ContactOptions()
+"""Options of contact of a pair for which the config says nothing."""
 
 
 def mesh_law(
@@ -329,59 +330,11 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """Factor of source fem_scaled on forces and slopes, equal to the factor of stage stiffness on k."""
+    """Return the factor by which source fem_scaled multiplies forces and slopes: the factor of stage
+    stiffness on k.
+    """
     if request.source != "fem_scaled":
         return 1.0
     assert request.mean is not None
     assert request.torque is not None
     return request.mean / float(load_table(ltca).at(request.torque, request.definition).mean())
-
-
-def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -> Outcome:
-    """Compute the mesh stiffness over a pitch, from the contact table or from the config's harmonics.
-
-    Parameters
-    ----------
-    mesh_stiffness : MeshStiffness
-        Section `mesh_stiffness` of the config.
-    ltca : pd.DataFrame or None
-        Table `ltca` of stage contact, None for the harmonics of the config.
-
-    Returns
-    -------
-    Outcome
-        Tables `tvms`, `harmonics` and `spectrum`.
-
-    Raises
-    ------
-    ConfigError
-        For a load outside those solved and for a k(t) that is not positive throughout.
-    """
-    request = stiffness_request(mesh_stiffness)
-    result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)
-    content = {
-        "tvms": result.curve,
-        "harmonics": result.harmonics,
-        "spectrum": result.spectrum,
-    }
-    return Outcome(content, result.summary)
-
-
-def load_dependence(ltca: pd.DataFrame) -> Outcome:
-    """Compute mean and variation of the mesh stiffness at every torque.
-
-    Parameters
-    ----------
-    ltca : pd.DataFrame
-        Table `ltca` of stage contact.
-
-    Returns
-    -------
-    Outcome
-        `table`.
-    """
-    table = table_of(load_table(ltca))
-    means = table.loc[table["definition"] == "average", "mean_n_per_m"]
-    least, largest = (format_number(1e-6 * mean) for mean in (means.min(), means.max()))
-    summary = f"mean average stiffness {least} to {largest} N/um over the torques solved"
-    return Outcome({"table": table}, summary)

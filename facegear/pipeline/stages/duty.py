@@ -71,6 +71,7 @@ def duty_loads(
 
 
 def _summary(table: pd.DataFrame) -> str:
+    """Say in one line which mesh of which bin carries the largest force."""
     worst = first_largest_row(table, "largest_force_n")
     position = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
     factors = f"K_gamma {worst['mesh_load_factor']:.3f}, K_v {worst['dynamic_factor']:.3f}"
@@ -83,6 +84,7 @@ COLUMNS = (
     *("bin", "torque_n_m", "mesh", "flank"),
     *("force_n", "unloaded_path_mm", "shaft_angle_error_deg", "stiffness_factor"),
 )
+"""Columns of table `duty_poses`; units stand in the names."""
 
 
 def duty_poses(

@@ -290,6 +290,7 @@ def _state(
     torque: Array,
     peak: Array,
 ) -> MachineState:
+    """Compute losses and temperatures of the machine in one bin of the duty cycle."""
     layout = machine.layout
     number, hours, speed_rpm = key
     of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]

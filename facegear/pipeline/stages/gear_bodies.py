@@ -110,6 +110,7 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
 
 
 def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
+    """Reduce a face gear that bends to its modes, with the teeth's contact patch and damping."""
     return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
 
 
@@ -135,7 +136,9 @@ def _parts(
     machine: Layout,
     speeds_rpm: tuple[float, float],
 ) -> dict[str, pd.DataFrame]:
-    """Tables of one gear at a pinion speed, and up to the last one."""
+    """Return the tables of one gear: modes at a pinion speed, and crossings with mesh harmonics up to the
+    last one.
+    """
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speeds_rpm[0] / ratio / body_tables.RPM
@@ -156,6 +159,7 @@ def _parts(
 
 
 def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
+    """Say in one line mass and lowest frequency of each gear."""
     parts = []
     for row in bodies.itertuples():
         gear_modes = modes[modes["gear"] == row.gear]

@@ -185,6 +185,7 @@ def shafts(
 
 
 def _summary(content: dict[str, pd.DataFrame]) -> str:
+    """Say in one line what the tables of shafts and torsion hold at worst."""
     parts, seats, bearings, torsion = [], content["seats"], content["bearings"], content["torsion"]
     if len(seats):
         sagged = np.hypot(seats["x_um"], seats["y_um"])
@@ -206,11 +207,14 @@ COLUMNS = (
     *("turning", "order", "of_mesh", "frequency_hz", "mesh"),
     *("error_um", "force_n", "force_at_rest_n"),
 )
+"""Columns of the orders of turns; errors in µm, forces in N."""
 EXCITED = (
     *("speed_rpm", "body", "order", "of_mesh", "frequency_hz", "part"),
     *("force_n", "torque_n_m"),
 )
+"""Columns of the response to periodic torques; forces in N, torques in N m."""
 OVER_SPEED = ("speed_rpm", "turning", "order", "of_mesh", "frequency_hz", "mesh", "force_n")
+"""Columns of the orders of turns over speed."""
 
 
 def shaft_orders(
@@ -302,6 +306,7 @@ def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) ->
 
 
 def _key(orders: TurnOrders, row: int, frequency: float) -> tuple[str, int, float, float]:
+    """Return the columns that identify an order of turns: gear, order, order of mesh, frequency, Hz."""
     of_mesh = float(orders.of_mesh[row])
     return orders.turning[row], int(orders.order[row]), of_mesh, of_mesh * frequency
 
@@ -319,6 +324,7 @@ def _largest(orders: TurnOrders) -> list[int]:
 
 
 def _shaft_orders_summary(table: pd.DataFrame, speed_rpm: float) -> str:
+    """Say in one line which order has the largest force at the nominal speed."""
     if table.empty:
         return "nothing differs from tooth to tooth"
     row = first_largest_row(table, "force_n")

@@ -171,6 +171,7 @@ def dynamics_sweep(
 
 
 def _waterfall(directions: Mapping[str, Direction]) -> dict[str, AnyArray]:
+    """Return speeds, orders and amplitudes of the spectra of each direction as arrays."""
     arrays = {"orders": ORDERS}
     for name, direction in directions.items():
         arrays[f"{name}_speed_rpm"] = direction.piece.speeds

@@ -162,6 +162,7 @@ def _by_mesh(
 
 
 def _summary(table: pd.DataFrame) -> str:
+    """Say in one line by how much the pose changes root stress at the worst mesh."""
     loaded_meshes = table[table["torque_n_m"] > 0.0]
     if loaded_meshes.empty:
         return "no mesh carries a load"

@@ -104,7 +104,7 @@ def pose_surface(
 
 
 def quantities(
-    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed: PosedContact
+    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, Array]:
     """Return the QUANTITIES that are known of one pose.
 
@@ -114,7 +114,7 @@ def quantities(
         Design of the pair.
     flanks : tuple[GearFlank, GearFlank]
         Compliance of the pinion and of the face gear.
-    posed : PosedContact
+    posed_contact : PosedContact
         Contact at the pose.
 
     Returns
@@ -128,15 +128,15 @@ def quantities(
         Where teeth interfere.
     """
     values = {
-        STIFFNESS: _stiffness(design, posed),
-        "ste_peak_to_peak_m": 1e-6 * posed.by_torque["ste_peak_to_peak_um"].to_numpy(),
-        "pressure_pa": 1e6 * posed.by_torque["pressure_mpa"].to_numpy(),
-        RADIUS: 1e-3 * posed.by_torque["path_radius_mm"].to_numpy(),
+        STIFFNESS: _stiffness(design, posed_contact),
+        "ste_peak_to_peak_m": 1e-6 * posed_contact.by_torque["ste_peak_to_peak_um"].to_numpy(),
+        "pressure_pa": 1e6 * posed_contact.by_torque["pressure_mpa"].to_numpy(),
+        RADIUS: 1e-3 * posed_contact.by_torque["path_radius_mm"].to_numpy(),
     }
-    torques = posed.by_torque["torque_n_m"].to_numpy()
+    torques = posed_contact.by_torque["torque_n_m"].to_numpy()
     for body, flank in zip(BODIES, flanks, strict=True):
         if flank.gauges is not None:
-            largest = largest_tension(passing(body, flank, posed.loads))
+            largest = largest_tension(passing(body, flank, posed_contact.loads))
             values[f"{body}_root_pa"] = np.array([largest(float(torque)) for torque in torques])
     return {name: values[name] for name in QUANTITIES if name in values and (values[name] > 0.0).all()}
 
@@ -158,7 +158,7 @@ def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
 
 
 def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) -> pd.DataFrame:
-    """Tabulate the nodes.
+    """Tabulate the quantities at all poses and torques at which contact is solved for the pose surface.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def operating_pose(
 def _direct(
     design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, AnyArray]:
-    """Quantities of a surface, and REACTIONS of the touching loads."""
+    """Return the quantities of a pose surface, and the REACTIONS, from contact solved directly at a pose."""
     table = posed_contact.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
     return {**quantities(design, flanks, posed_contact), **dict(zip(REACTIONS, table.T, strict=True))}
 
@@ -308,6 +308,7 @@ def _check(
 
 
 def _summary(meshes: pd.DataFrame, leaving_loads: pd.DataFrame, worst: int, result: OperatingPose) -> str:
+    """Say in one line how the search for the loaded position ended and which mesh it changes most."""
     row = meshes.iloc[worst]
     text = (
         f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "

@@ -88,6 +88,7 @@ def search(islands: Sequence[pd.DataFrame], **machine_fields: Any) -> Outcome:
 
 
 def _spread(volumes: pd.DataFrame) -> str:
+    """Say in words how far the hypervolumes of different seeds lie apart."""
     if volumes.empty:
         return "none of them holds every limit"
     last = volumes.groupby("seed")["hypervolume"].last()
@@ -96,7 +97,9 @@ def _spread(volumes: pd.DataFrame) -> str:
 
 
 def _winners(best: pd.DataFrame, search_task: Task, machine: SearchedMachine) -> pd.DataFrame:
-    """Nominal design and winners of the front: goals as searched, and all quantities at full accuracy."""
+    """Return the nominal design and the winners of the front: goals as searched, and all quantities at full
+    accuracy.
+    """
     coarse = assessor(machine, machine.section.hunting_cycles, machine.section.samples)
     full = assessor(machine, WHOLE, machine.section.winner_samples)
     names = [variable.name for variable in search_task.variables]
@@ -112,7 +115,7 @@ def _winners(best: pd.DataFrame, search_task: Task, machine: SearchedMachine) ->
 
 
 def _nominal(machine: SearchedMachine) -> list[float]:
-    """Values of the variables in the config; nan where the keys of one differ."""
+    """Return the values of the variables in the config; nan where the keys of a variable differ."""
     free = [variable.sets for variable in machine.section.variables]
     start = movable(machine.values, [key for keys in free for key in keys])
     return [nominal(start, keys) for keys in free]

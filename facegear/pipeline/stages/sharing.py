@@ -184,6 +184,7 @@ def load_sharing_reference(
 
 
 def _summary(speeds: pd.DataFrame) -> str:
+    """Say in one line which group shares worst at which speed."""
     if not speeds["mean"].notna().any():
         return "no meshes share a load"
     worst = first_largest_row(speeds, "mean")
@@ -348,6 +349,7 @@ def _torque(transmission: Transmission, machine: Machine) -> float:
 
 
 def _largest(points: pd.DataFrame, kind: GroupKind) -> float:
+    """Return the largest number on the map of a kind of group, 0 if it has no points."""
     return (
         float(points.loc[points["kind"] == kind.value, "number"].max())
         if kind.value in set(points["kind"])
@@ -356,6 +358,7 @@ def _largest(points: pd.DataFrame, kind: GroupKind) -> float:
 
 
 def _sharing_map_summary(advice_table: pd.DataFrame) -> str:
+    """Say in one line which change of the machine lowers the largest K_gamma most."""
     if advice_table.empty:
         return "no group carries a load to share"
     row = advice_table.loc[advice_table["worst_found"].idxmin()]

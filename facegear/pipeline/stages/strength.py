@@ -92,7 +92,7 @@ def root_stress(
 def root_contents(
     flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
-    """Return the parts of the stage.
+    """Return the tables and arrays that stage root_stress stores.
 
     Parameters
     ----------
@@ -124,12 +124,15 @@ def root_contents(
 
 
 def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_error: float) -> RootStress:
+    """Compute the root stress of a body over a passage; the error along the face is added to its own."""
     root = passing(body, flank, loads, variant)
     return replace(root, error=root.error + face_error)
 
 
 def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
-    """Relative errors of the planes along the face; nan where they are not known."""
+    """Return the relative error of root stress by the planes along the face, by body; nan where it is not
+    known.
+    """
     pair = setup.pair
     materials = {body: pair.material(body) for body in BODIES}
     try:
@@ -140,6 +143,7 @@ def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[
 
 
 def _summary(table: pd.DataFrame) -> str:
+    """Say in one line the largest root stress of each body."""
     worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
     peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
     text = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())
@@ -159,7 +163,7 @@ def dynamic_root_stress(
     transmission: Transmission,
     teeth: ToothNumbers,
     gears: Sequence[str],
-    posed: Arrays | None = None,
+    posed_contacts: Arrays | None = None,
     posed_by_torque: pd.DataFrame | None = None,
     poses: Arrays | None = None,
 ) -> Outcome:
@@ -184,7 +188,7 @@ def dynamic_root_stress(
     gears : Sequence[str]
         Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its own gear
         and flank.
-    posed : Arrays or None
+    posed_contacts : Arrays or None
         Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
         Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
@@ -206,7 +210,7 @@ def dynamic_root_stress(
         drive, back = flank_places(phases[[number]], (cycles[:, None] + between).ravel()).T
         forces[str(mesh)], positions[str(mesh)] = force, np.where(force < 0.0, back, drive)
     contacts = flank_contacts(stress, by_flank)
-    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     contacts_by_mesh = mesh_contacts(forces, contacts, gears, at_pose)
     table = dynamic_stress_table(
         forces, positions, pair(tooth_pair).design.pinion_base_radius, contacts_by_mesh
@@ -224,7 +228,7 @@ def stress_over_speed(
     tooth_pair: ToothPair,
     gears: Sequence[str],
     branches: pd.DataFrame | None = None,
-    posed: Arrays | None = None,
+    posed_contacts: Arrays | None = None,
     posed_by_torque: pd.DataFrame | None = None,
 ) -> Outcome:
     """Compute root stress and pressure over the sweep and, where there are any, the branches.
@@ -246,7 +250,7 @@ def stress_over_speed(
         gear, on the flank where it is more.
     branches : pd.DataFrame or None
         Table of stage branches, None if there is none.
-    posed : Arrays or None
+    posed_contacts : Arrays or None
         Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
         Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
@@ -268,7 +272,7 @@ def stress_over_speed(
         forces_of_branches = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, forces_of_branches], ignore_index=True)
     contacts = flank_contacts(stress, by_flank)
-    at_pose = posed_of(contacts, gears, posed, posed_by_torque, inputs.poses)
+    at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, inputs.poses)
     by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
     contacts_by_mesh = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
     radius = pair(tooth_pair).design.pinion_base_radius
@@ -285,7 +289,7 @@ def rating(
     by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
     mesh_losses: pd.DataFrame | None = None,
-    posed: Arrays | None = None,
+    posed_contacts: Arrays | None = None,
     posed_by_torque: pd.DataFrame | None = None,
     poses: Arrays | None = None,
     duty_poses: pd.DataFrame | None = None,
@@ -308,7 +312,7 @@ def rating(
         Table of stage duty_loads, where the loads are the machine's.
     mesh_losses : pd.DataFrame or None
         Table `meshes` of stage machine_loss, where its flanks are lubricated.
-    posed : Arrays or None
+    posed_contacts : Arrays or None
         Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
         Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
@@ -338,7 +342,7 @@ def rating(
     design = pair(tooth_pair).design
     request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
     contacts = flank_contacts(stress, by_flank)
-    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     stands = None if duty_poses is None else duty_contact_poses(duty_poses)
     ratings: list[FailureRating] = []
     tables: dict[str, list[pd.DataFrame]] = {}

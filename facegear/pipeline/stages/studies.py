@@ -43,9 +43,10 @@ def tolerances_chunk(
 ) -> Outcome:
     """Compute samples `first` to `last` of a machine with its tolerances.
 
-    A sample that cannot be built or computed is a row with its error. The columns MISSED hold, for the first
-    CHECKED_SAMPLES samples, what the mesh cycles taken miss; SIMPLIFIED what is missed by the few points of
-    the contact that friction is taken at. They are empty in other rows.
+    A sample that cannot be built or computed is a row with its error. For the first CHECKED_SAMPLES samples,
+    columns of CYCLE_SELECTION_ERRORS hold the errors by mesh cycles left out, and those of
+    SIMPLIFICATION_ERRORS the errors of computing friction at few contact points. They are empty in other
+    rows.
 
     Parameters
     ----------
@@ -125,6 +126,7 @@ EVENTS = {
     PAST_LAW: "some mesh is past the last level of its load-dependent law",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
+"""Events whose fraction of samples is listed, in words."""
 CHECKS = {
     **CYCLE_SELECTION_ERRORS,
     **{f"{name}, of few places of the contact": column for name, column in SIMPLIFICATION_ERRORS.items()},
@@ -187,6 +189,7 @@ def tolerances(
 
 
 def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
+    """Say in words loss and contact temperature that 1 % of the samples exceed."""
     rows = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     if CONTACT_TEMPERATURE not in rows:
         return []
@@ -194,6 +197,7 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 
 
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
+    """Say in words the largest errors of the simplifications of the samples."""
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
     cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]
@@ -214,6 +218,7 @@ COLUMNS = (
     *("torque_factor", "speed_rpm", "quantity", "percentile"),
     *("value", "low", "high", "samples", "failed"),
 )
+"""Columns of the map of percentiles over torque and speed."""
 
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_fields: Any) -> Outcome:

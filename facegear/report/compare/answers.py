@@ -16,6 +16,7 @@ from facegear.report.compare.judge import NOT_STORED, answer_tables
 MAX_BYTES = 60_000
 """A table larger than this is a history, and not stored with a release."""
 SAME_DATE = (2000, 1, 1, 0, 0, 0)
+"""Date of all files in a stored answer, so that equal answers give equal bytes."""
 
 
 def answer_names() -> list[str]:

@@ -29,24 +29,25 @@ UNDETERMINED = ("shapes.csv",)
 NOT_STORED = "not_stored.json"
 """Record inside a stored answer: the tables that were too large for it."""
 COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerical_error", "verdict")
+"""Columns of the rows of a comparison."""
 
 
 class Verdict(StrEnum):
     """Verdict on a number or a label."""
 
-    SAME = "same"
+    UNCHANGED = "same"
     WITHIN_ERROR = "within its numerical error"
-    MOVED = "moved"
+    BEYOND_ERROR = "moved"
     NO_ERROR = "moved, its error is not stated"
     IRREGULAR = "irregular motion, a statistic"
     ROUNDING = "after irregular motion, decided by rounding"
     MIRROR = "mirror image of the same motion"
     LABEL = "label changed"
-    GONE = "gone"
-    ADDED = "added"
+    ONLY_IN_OLD = "gone"
+    ONLY_IN_NEW = "added"
 
 
-CHANGES = (Verdict.MOVED, Verdict.NO_ERROR, Verdict.LABEL, Verdict.GONE, Verdict.ADDED)
+CHANGES = (Verdict.BEYOND_ERROR, Verdict.NO_ERROR, Verdict.LABEL, Verdict.ONLY_IN_OLD, Verdict.ONLY_IN_NEW)
 """Verdicts that make two folders different."""
 
 
@@ -102,7 +103,7 @@ def compare(old: Path, new: Path) -> Comparison:
     ]
     rows = pd.concat(judgements, ignore_index=True)
     counts = {verdict: int((rows["verdict"] == verdict).sum()) for verdict in Verdict}
-    return Comparison(rows[rows["verdict"] != Verdict.SAME].reset_index(drop=True), counts)
+    return Comparison(rows[rows["verdict"] != Verdict.UNCHANGED].reset_index(drop=True), counts)
 
 
 def answer_tables(folder: Path) -> set[str]:
@@ -143,8 +144,9 @@ def tables_not_stored(folder: Path) -> set[str]:
 
 
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
+    """Judge all values of a table that stands in one or both folders."""
     if old is None or new is None:
-        return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
+        return _one_sided(name, ["whole table"], Verdict.ONLY_IN_NEW if old is None else Verdict.ONLY_IN_OLD)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
     table = declaration_of(TABLES, name) or Table()
     speeds = _bracket_names(before, after, table)
@@ -160,7 +162,10 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         _judge_column(name, table, before.loc[common_rows], after.loc[common_rows], column, group)
         for column in columns
     ]
-    for table_here, other_table, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
+    for table_here, other_table, verdict in (
+        (before, after, Verdict.ONLY_IN_OLD),
+        (after, before, Verdict.ONLY_IN_NEW),
+    ):
         lost_columns = [
             f"column {column}" for column in table_here.columns if column not in other_table.columns
         ]
@@ -196,6 +201,7 @@ def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.D
 
 
 def _value_text(value: object) -> str:
+    """Return a value as text of at most ten digits."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
@@ -244,6 +250,7 @@ def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
 def _judge_column(
     name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
+    """Judge the values of one column row by row, with their errors."""
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     rows = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
@@ -261,7 +268,7 @@ def _judge_column(
                     _both_irregular(old, new, table),
                     has_image & (column not in table.motion),
                 ],
-                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
+                [Verdict.UNCHANGED, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
                 Verdict.LABEL,
             ),
         )
@@ -277,8 +284,8 @@ def _judge_column(
         within = change <= errors
     verdict = np.select(
         [change <= REPEATABLE, irregular, within, open_rows, images],
-        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
-        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
+        [Verdict.UNCHANGED, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
+        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.BEYOND_ERROR),
     )
     return rows.assign(relative_change=change, numerical_error=errors, verdict=verdict)
 
@@ -330,6 +337,7 @@ def _same_but_for_items(
 
 
 def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    """Return the values of a quantity in the order of the rows of `by_size`."""
     return pd.Series(quantity.to_numpy()[by_size.index])
 
 
@@ -348,7 +356,7 @@ def _relative_change(
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
-    """Rows whose motion does not repeat, shape (rows,)."""
+    """Return for which rows (rows,) the motion does not repeat."""
     motions = [frame[column] for column in table.motion if column in frame.columns]
     rows = np.zeros(len(frame), dtype=bool)
     for motion in motions:
@@ -367,12 +375,15 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
 
 
 def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
-    """Rows for which a column of yes and no says yes, shape (rows,); none where there is no such column."""
+    """Return for which rows (rows,) a column of truth values is true; for none where there is no
+    such column.
+    """
     if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
     return frame[column].fillna(False).astype(bool).to_numpy()
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:
+    """Return rows that stand in one folder only, with their verdict."""
     frame = pd.DataFrame({"file": name, "row": rows}, columns=list(COLUMNS))
     return frame.assign(verdict=verdict)

@@ -84,6 +84,7 @@ def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
 
 
 def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    """Yield which keys of the config differ, with both values."""
     for rule in sorted(before.keys() & after.keys()):
         old, new = (dict(_leaves("", side[rule]["params"].get("needs") or {})) for side in (before, after))
         for key in sorted(old.keys() | new.keys()):
@@ -92,6 +93,7 @@ def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> It
 
 
 def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield dotted keys and values below a key; parts of lists go by their name."""
     if isinstance(value, Mapping):
         inside = list(value.items())
     elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
@@ -107,10 +109,12 @@ def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _value_text(values: Mapping[str, Any], key: str) -> str:
+    """Return a value as text, or `absent`."""
     return repr(values[key]) if key in values else "absent"
 
 
 def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    """Yield which stages have other code."""
     for rule in sorted(before.keys() & after.keys()):
         if before[rule].get("code") != after[rule].get("code"):
             yield f"code of stage {rule}"
@@ -119,6 +123,7 @@ def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iter
 
 
 def _versions(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    """Yield which libraries have other versions."""
     for rule in sorted(before.keys() & after.keys()):
         old, new = before[rule].get("versions", {}), after[rule].get("versions", {})
         for library in sorted(old.keys() & new.keys()):
@@ -289,16 +294,19 @@ def by_table(comparison: Comparison) -> pd.DataFrame:
 
 
 def _file_names(files: pd.Series) -> str:
+    """Name the first files and count the others."""
     remainder = f" and {len(files) - MAX_FILES_NAMED} more" if len(files) > MAX_FILES_NAMED else ""
     return ", ".join(files[:MAX_FILES_NAMED]) + remainder
 
 
 def _counts(comparison: Comparison) -> pd.DataFrame:
+    """Return the number of values of each verdict as a table."""
     rows = [(verdict.value, count) for verdict, count in comparison.counts.items() if count]
     return pd.DataFrame(rows, columns=["verdict", "numbers and labels"])
 
 
 def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Iterator[Picture]:
+    """Yield figures of the curves that moved most, a figure for each file."""
     for name in comparison.rows["file"].unique():
         curve = declaration_of(CURVES, name)
         if curve and (old / name).exists() and (new / name).exists():

@@ -181,6 +181,7 @@ TABLES: Mapping[str, Table] = {
     "strength/rating.csv": Table(("body", "gear", "flank", "failure", "method")),
     "tolerances/percentiles.csv": Table(("quantity", "percentile"), "quantity", {"value": 6e-3}),
 }
+"""Keys, kind of quantity and numerical errors of each compared table, by its path."""
 
 
 @dataclass(frozen=True)
@@ -204,6 +205,7 @@ CURVES: Mapping[str, Curve] = {
     "load_sharing/nominal.csv": Curve("cycle_fraction", "coefficient", ("group",)),
     "load_sharing/speed_range.csv": Curve("speed_rpm", "mean", ("group",)),
 }
+"""Columns of the curves that a comparison draws, by the path of their table."""
 
 
 def declaration_of(declarations: Mapping[str, Declaration], name: str) -> Declaration | None:

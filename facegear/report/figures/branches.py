@@ -16,18 +16,24 @@ from facegear.report.figures.motion import rms_axis, select
 PERIOD_COLOURS = (BLUE, RED, GREEN, PURPLE)
 """Colours of period 1, 2, 4 and any other."""
 LABELLED_PERIODS = (1, 2, 4)
+"""Periods with a colour of their own, mesh periods."""
 MARKERS = {
     "fold": "triangle-up",
     "period doubling": "square",
     "Neimark-Sacker": "diamond",
     "branch point": "circle",
 }
+"""Marker of each kind of special point."""
 SWEEPS = {"up": ("y-up", grey(0.45)), "down": ("y-down", grey(0.7))}
+"""Marker and colour of the jumps of a sweep by its direction."""
 IRREGULAR = grey(0.55)
+"""Colour of motions that are not periodic."""
 MIN_FRACTION_SHOWN = 0.06
 """Smallest fraction of a bar that has room for its number."""
 LOCI: Mapping[str, tuple[str, LineStyle]] = {"fold": (BLUE, "solid"), "period doubling": (RED, "dash")}
+"""Colour and line of each kind of locus."""
 UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
+"""Angles at which the unit circle is drawn, rad."""
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
@@ -103,7 +109,7 @@ def amplitudes(
 
 
 def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
-    """Stable and unstable parts of a branch."""
+    """Yield the stable and unstable parts of a branch as curves."""
     colour = _colour(int(branch["period"].iloc[0]))
     speed, value = branch["speed_rpm"].to_numpy(), branch["deflection_ac_rms_um"].to_numpy()
     stable = branch["stable"].to_numpy(dtype=bool)
@@ -117,6 +123,7 @@ def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
+    """Yield the special points of a branch as marks by kind."""
     for kind, marker in MARKERS.items():
         rows = special[special["kind"] == kind]
         if len(rows):
@@ -125,12 +132,14 @@ def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _colour(period: int) -> str:
+    """Return the colour of a period."""
     return PERIOD_COLOURS[
         LABELLED_PERIODS.index(period) if period in LABELLED_PERIODS else len(LABELLED_PERIODS)
     ]
 
 
 def _keys(branches: pd.DataFrame) -> Iterator[Key]:
+    """Yield the entries of the legend: periods, stable and unstable lines."""
     for name, colour in dict.fromkeys(_motion(f"period-{period}") for period in _by_size(branches["period"])):
         yield Key(name, colour, width=1.6)
     yield Key("stable", grey(0.3), width=1.6)
@@ -139,7 +148,7 @@ def _keys(branches: pd.DataFrame) -> Iterator[Key]:
 
 
 def _by_size(periods: pd.Series) -> list[int]:
-    """Periods with a colour of their own first."""
+    """Return the periods in rising order, those with a colour of their own first."""
     return sorted(periods.unique(), key=lambda period: (period not in LABELLED_PERIODS, period))
 
 
@@ -222,11 +231,12 @@ def fractions(table: pd.DataFrame) -> Figure:
 
 
 def _array_of(value: float) -> Array:
+    """Return a number as an array of one value."""
     return np.array([float(value)])
 
 
 def _motion(label: str) -> tuple[str, str]:
-    """Name and colour of a class of motion."""
+    """Return name and colour of a class of motion."""
     if not label.startswith("period-"):
         return "not periodic", IRREGULAR
     period = int(label.removeprefix("period-"))

@@ -6,8 +6,10 @@ from math import ceil, floor, log10
 from types import MappingProxyType
 from typing import Any
 
+# Colours after Okabe and Ito, as web browsers write them.
 BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
 PURPLE, ORANGE, SKY, WHITE = "#CC79A7", "#E69F00", "#56B4E9", "#ffffff"
+"""Further colours after Okabe and Ito, and white."""
 COLOURS = (BLACK, BLUE, RED, GREEN, PURPLE, ORANGE, SKY)
 """Colours after Okabe and Ito, in the order in which curves take them."""
 GEAR_LINES = MappingProxyType({"lower": "solid", "upper": "dash"})
@@ -83,6 +85,7 @@ def scale_colours(name: str, positions: Iterable[float]) -> list[str]:
 
 @cache
 def _scale_colour(name: str, position: float) -> str:
+    """Return the colour of a matplotlib scale at a position from 0 to 1."""
     from matplotlib import colormaps, colors  # a figure is data: only its drawing and scales need the library
 
     return str(colors.to_hex(colormaps[name](position)))

@@ -13,9 +13,23 @@ from facegear.report.figures.marks import Curve, Line, LineStyle, Look
 def curves_compared(
     old: pd.DataFrame, new: pd.DataFrame, x: str, y: str, labels: tuple[str, str], title: str
 ) -> Figure:
-    """Above both curves `y` over `x`, below what the new one has more; both tables are of one series.
+    """Draw two runs' curves of one series above each other, and below them the difference new - old.
 
-    `labels`: `x` and `y` in words, with their units in brackets.
+    Parameters
+    ----------
+    old, new : DataFrame
+        Tables of one series, in any unit.
+    x, y : str
+        Columns across and up.
+    labels : (str, str)
+        `x` and `y` in words, with their units in brackets.
+    title : str
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     joined_curves = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
     (across, across_unit), (up, unit) = (split_label(label) for label in labels)
@@ -55,7 +69,9 @@ def split_label(label: str) -> tuple[str, str]:
 
 
 MARKERS = ("square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+"""Markers of the winners, in their order."""
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+"""Lines of the seeds, in their order."""
 
 
 def front_figure(
@@ -95,6 +111,7 @@ def front_figure(
 
 
 def _axis(objective: str) -> Axis:
+    """Return the axis of an objective or of the generations."""
     return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 

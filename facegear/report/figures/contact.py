@@ -26,6 +26,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
+"""Numbers of the tooth pairs, as their legend has them."""
 
 MARKS = (
     (("pinion tip", "gear tip"), "square", BLUE, "tip edge: line load only"),
@@ -135,9 +136,22 @@ def contact_pattern(arrays: Arrays) -> Figure:
 
 
 def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") -> Figure:
-    """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows.
+    """Draw contact patterns as panels with one scale, which ends at their largest pressure.
 
-    All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
+    Marks show where only a line load is known.
+
+    Parameters
+    ----------
+    panels : mapping of str to (arrays, float)
+        Arrays `pressure` of stage contact, of shape (...) in SI units, and the torque to show, N m, by title
+        of the panel.
+    title : str
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     patterns = {name: (pattern(arrays), float(torque)) for name, (arrays, torque) in panels.items()}
     top = max(
@@ -153,17 +167,19 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") 
         high=float(nodes[:, 1].max()),
     )
     up = Axis("Pinion\nradius", "mm", low=float(height.min()), high=float(height.max()))
-    drawn = [
+    drawn_panels = [
         Panel(
             across, up, _marks(flank_pattern, torque, scale), title=name, height=1.1, ground=UNLOADED_COLOUR
         )
         for name, (flank_pattern, torque) in patterns.items()
     ]
-    return Figure(drawn, title=title)
+    return Figure(drawn_panels, title=title)
 
 
 def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Map | Curve]:
-    """Pressures on the surface that the contact lines sweep, and marks at edges."""
+    """Return the marks of a panel: the pressure on the surface that the contact lines sweep, and points at
+    edges.
+    """
     width = 1e3 * flank_pattern.points[..., 1]
     radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
     edge_kind = flank_pattern.edge[torque]
@@ -178,7 +194,9 @@ def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Ma
 
 
 def _fade_edges(field: Array, edge_kind: Integers) -> Array:
-    """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
+    """Return the pressure field with zeros in unloaded planes next to loaded ones, where the loaded length
+    ends.
+    """
     is_finite = np.isfinite(field)
     beside = np.zeros_like(is_finite)
     beside[:, 1:] |= is_finite[:, :-1]
@@ -187,7 +205,7 @@ def _fade_edges(field: Array, edge_kind: Integers) -> Array:
 
 
 def _title(arrays: Arrays, torque: float) -> str:
-    """Title of a panel: torque, largest pressure with its error, largest line load of a tip edge."""
+    """Return a panel's title: torque, largest pressure with its error, largest line load of a tip edge."""
     on = arrays["line_torque_n_m"] == torque
     at = np.argmax(arrays["line_pressure_pa"][on])
     pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
@@ -218,10 +236,27 @@ def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
 
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+"""Lines of the cases after the colours are used up."""
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
-    """Transmission error less its mean, average stiffness, contact radius over a pitch at a torque (N m)."""
+    """Draw transmission error less its mean, average stiffness and contact radius over a pitch, a curve for
+    each case.
+
+    Parameters
+    ----------
+    cases : sequence of StudiedContact
+        Contact of each case.
+    torque : float
+        Torque on the pinion, N m; each case shows its nearest one.
+    title : str
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     error: list[Curve] = []
     stiffness: list[Curve] = []
     path: list[Curve | Line] = []
@@ -245,12 +280,27 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
 
 
 def _variation(closed_curve: pd.Series) -> pd.Series:
-    """Less the mean over the pitch, whose end repeats its beginning."""
+    """Return a curve less its mean over the pitch; its last value, which repeats the first, does not count in
+    the mean.
+    """
     return closed_curve - closed_curve.iloc[:-1].mean()
 
 
 def pattern_study(cases: Sequence[StudiedContact], torque: float) -> Figure:
-    """Contact patterns at a torque (N m), one panel a case, one scale."""
+    """Draw the contact patterns of several cases at one torque, a panel for each case, all with one scale.
+
+    Parameters
+    ----------
+    cases : sequence of StudiedContact
+        Contact of each case.
+    torque : float
+        Torque on the pinion, N m; each case shows its nearest one.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     return pattern_panels(
         {case.label_at(torque): (case.pressure, case.torque_near(torque)) for case in cases}
     )
@@ -265,9 +315,29 @@ def contact_study_figures(
     by_torque: Sequence[pd.DataFrame],
     pressure: Sequence[Arrays],
 ) -> list[Figure]:
-    """Curves and patterns of each study beside those of the machine itself.
+    """Draw curves and patterns of each study beside those of the machine itself.
 
-    `points`: study, point and label of each case; `titles`: of each study by its name.
+    Parameters
+    ----------
+    points : sequence of sequences of str
+        Study, point and label of each case.
+    titles : mapping of str to str
+        Title of each study by its name.
+    torque : float
+        Torque on the pinion, N m.
+    pair : sequence of mappings
+        Record of the tooth geometry of each case; the first is the machine.
+    ltca : sequence of DataFrame
+        Table `ltca` of stage contact of each case.
+    by_torque : sequence of DataFrame
+        Table `by_torque` of stage contact of each case.
+    pressure : sequence of mappings of (...) arrays
+        Arrays `pressure` of stage contact of each case, SI units.
+
+    Returns
+    -------
+    list of Figure
+        Two figures for each study: curves and patterns.
     """
     machine, *other_cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     study_figures = []
@@ -278,7 +348,7 @@ def contact_study_figures(
 
 
 NEAR = 8.0
-"""Distance (mm) of a path from an end of the face below which that is drawn."""
+"""Distance (mm) between a contact path and an end of the face below which that end is drawn."""
 
 
 def operating_pose_figures(
@@ -337,6 +407,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
+    """Return the title of a panel with the radius of the contact path and the largest pressure."""
     pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
     return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
 

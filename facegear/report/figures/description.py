@@ -235,6 +235,7 @@ def entries(panels: Sequence[Panel], keys: Sequence[Key] = ()) -> list[Key]:
 
 
 def _legend_keys(panels: Sequence[Panel]) -> Iterator[Key]:
+    """Yield the entries of the legend from the named marks of all panels."""
     for mark in (mark for panel in panels for mark in panel.marks):
         if not getattr(mark, "name", "") or not getattr(mark, "in_legend", True):
             continue
@@ -318,6 +319,7 @@ def extent(mark: Mark, letter: Letter) -> Array:
 
 
 def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
+    """Return the smallest and largest coordinates of bars along an axis."""
     if (letter == "y") == bars.flat:
         half = 0.5 * bars.width
         return [*(bars.positions - half), *(bars.positions + half)]
@@ -327,6 +329,7 @@ def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
 
 
 def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
+    """Return the common ends of an axis of several panels, given ones first."""
     axes: list[Axis] = [getattr(panel, letter) for panel in panels]
     values = np.concatenate(
         [np.zeros(0), *(extent(mark, letter) for panel in panels for mark in panel.marks)]
@@ -341,7 +344,7 @@ def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
 
 
 def _with_margin(values: Array, lows: Sequence[float], highs: Sequence[float]) -> tuple[float, float]:
-    """Ends that are given, and else room beside the values."""
+    """Return the ends of an axis: the given ones, or the extreme values with a margin."""
     low = min(lows) if lows else float(values.min(initial=np.inf))
     high = max(highs) if highs else float(values.max(initial=-np.inf))
     if not np.isfinite([low, high]).all() or high - low <= NO_RANGE * max(abs(low), abs(high)):

@@ -47,6 +47,7 @@ STYLE = {
     "svg.hashsalt": "facegear",
     "svg.fonttype": "path",
 }
+"""Settings of matplotlib for all figures."""
 
 
 LETTER, HANDLE, LINE_HEIGHT = 0.064, 0.53, 0.18
@@ -193,6 +194,7 @@ def _height(figure: Figure) -> float:
 
 
 def _lines(text: str) -> int:
+    """Count the lines of a text."""
     return text.count("\n") + 1 if text else 0
 
 
@@ -206,11 +208,12 @@ def _columns(keys: Sequence[Key], width: float) -> int:
 
 
 def _legend_height(keys: Sequence[Key], width: float) -> float:
+    """Return the height of the legend, inches."""
     return LINE_HEIGHT * 1.1 * ceil(len(keys) / _columns(keys, width)) + 0.05 if keys else 0.0
 
 
 def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
-    """One axes a panel."""
+    """Return one matplotlib axes for each panel."""
     heights = [
         max(panel.height for panel in figure.panels[row * figure.columns : (row + 1) * figure.columns])
         for row in range(figure.rows)
@@ -235,6 +238,7 @@ def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
 
 
 def _draw_panel(on: Axes, panel: Panel) -> None:
+    """Draw the marks of a panel, its axes and its title."""
     if panel.ground:
         on.set_facecolor(panel.ground)
     for order, mark in enumerate(panel.marks):
@@ -248,7 +252,7 @@ def _draw_panel(on: Axes, panel: Panel) -> None:
 
 
 def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
-    """Labels, limits and ticks of a panel."""
+    """Set labels, limits and ticks of a panel."""
     panel = figure.panels[number]
     on.set_title(wrap_text(panel.title, width - 0.4))
     if panel.z:
@@ -270,6 +274,7 @@ def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
 
 
 def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
+    """Set the ticks of an axis: named ones, or round numbers."""
     if axis.ticks:
         positions, names = zip(*axis.ticks, strict=True)
         upright = letter == "x" and len(names) >= UPRIGHT and max(map(len, names)) > 3
@@ -287,6 +292,7 @@ def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
 
 
 def _frame_in_space(on: Any, panel: Panel) -> None:
+    """Label and limit the three axes of a panel in space."""
     for letter in "xyz":
         axis = getattr(panel, letter)
         getattr(on, f"set_{letter}label")(axis.label)
@@ -303,7 +309,7 @@ def _frame_in_space(on: Any, panel: Panel) -> None:
 
 
 def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
-    """The legend of a panel above it, where it hides no curve and no offset of its numbers."""
+    """Draw the legend of a panel above it, where it hides no curve and no offset of its numbers."""
     if keys:
         columns = _columns(keys, width - 0.5)
         handles = [_handle(key) for key in keys]
@@ -314,6 +320,7 @@ def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
 
 
 def _handle(key: Key) -> Any:
+    """Return matplotlib's handle of an entry of the legend."""
     if key.area:
         return Patch(color=key.colour, alpha=key.opacity, lw=0, label=key.name)
     return Line2D(
@@ -330,7 +337,7 @@ def _handle(key: Key) -> Any:
 
 
 def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) -> None:
-    """Bars of colours: one above all panels that share a scale, else one beside each."""
+    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel."""
     if scale := figure.shared_scale:
         mpl_figure.colorbar(_colours(scale), ax=list(axes), location="top", aspect=40, label=scale.label)
         return

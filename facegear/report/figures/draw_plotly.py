@@ -21,6 +21,7 @@ from facegear.report.figures.plotly_values import (
 )
 
 DPI = 96
+"""Pixels of an inch, as browsers count."""
 GAP, TITLE, LINE, EDGE, TICKS = 8, 13, 18, 22, 26
 """In pixels: between a panel, or its title, and the legend; size of a panel's title; height of a line; room
 for half of a number at the right; height of the numbers below an axis.
@@ -38,6 +39,7 @@ UPRIGHT, LABEL = 7, 48
 BAR = 58
 """Pixels of a bar of colours that lies above all panels, with its numbers and its label."""
 LETTERS: tuple[Letter, Letter] = ("x", "y")
+"""Axes of a panel."""
 APART = 0.2
 """Room between columns of panels, in the width of all."""
 SHORT = 1.3
@@ -107,6 +109,7 @@ def write(figure: Figure, path: Path) -> None:
 
 
 def _axis_id(letter: str, number: int) -> str:
+    """Return plotly's name of an axis: x, x2, and so on."""
     return letter if number == 0 else f"{letter}{number + 1}"
 
 
@@ -142,6 +145,7 @@ def _domains(figure: Figure) -> tuple[list[tuple[float, float]], list[tuple[floa
 
 
 def _lines(text: str) -> int:
+    """Count the lines of a text at the width of a narrow screen."""
     return narrow(text).count("\n") + 1 if text else 0
 
 
@@ -177,7 +181,7 @@ def _list_once(data: Sequence[Part]) -> None:
 
 
 def _title(target: PlotlyAxes) -> Part:
-    """The title above a panel."""
+    """Return plotly's annotation for the title above a panel."""
     return {
         "xref": f"{target.x} domain",
         "yref": f"{target.y} domain",

@@ -15,6 +15,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import Bars, ColourScale, Curve, Levels, Look, Map
 
 FLANK_COLOURS = {"drive": BLUE, "back": ORANGE}
+"""Colour of each flank."""
 
 
 def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[Figure, ...]:
@@ -218,7 +219,7 @@ def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
 
 
 def _names(positions: Mapping[str, float]) -> Axis:
-    """Axis with the name of each place, the first above."""
+    """Return an axis with a name at each of its positions, the first one above."""
     ticks = [(at, name) for name, at in positions.items()]
     return Axis("", "", low=-0.6, high=len(positions) - 0.4, is_falling=True, ticks=ticks)
 

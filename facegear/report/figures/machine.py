@@ -11,29 +11,48 @@ from facegear.build.machine_layout import ToothNumbers
 from facegear.build.machine_layout import layout as layout_of
 from facegear.machine.layout import Layout, Role, Side
 from facegear.number_format import format_number
-from facegear.report.figures.colours import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, WHITE, grey
+from facegear.report.figures.campbell import CLASS_COLOURS
+from facegear.report.figures.colours import BLACK, BLUE, GREEN, PURPLE, RED, grey
 from facegear.report.figures.description import Axis, Figure, Key, Panel
 from facegear.report.figures.marks import Area, Arrow, Bars, Curve, Line, LineStyle, Look, Mark, Text
-from facegear.report.figures.motion import CLASS_COLOURS
-from facegear.schema.shafts import ShaftSection
 from facegear.schema.transmission import Transmission
 
 ROLE_COLOUR = {Role.INPUT: BLUE, Role.IDLER: grey(0.55), Role.TAIL: PURPLE}
+"""Colour of the pinions of each role."""
+
+
 OPACITY = 0.55
 """Opacity of a drawn pinion."""
+
+
 MESH, BEARING = RED, GREEN
+"""Colours of the forces of meshes and on bearings."""
+
+
 ON_BEARINGS = "force on bearings, same scale"
+"""Legend of the forces on bearings."""
+
+
 LONGEST = 0.55
 """Longest arrow over the mesh radius."""
+
+
 HALF_FACE = 0.06
 """Half of the drawn face width over the mesh radius."""
 
+
 LABEL = 1.16
 """Distance from the gear's centre at which the pinions' labels begin, over the mesh radius."""
+
+
 REACH, BELOW, TITLE = 2.0, 1.75, 1.8
 """Extent of a panel beside and below the gear's centre, and height of its title, over the mesh radius."""
+
+
 LETTERS = 13
 """Letters of a pinion's name in one line."""
+
+
 BESIDE = 0.4
 """Cosine of the direction to a pinion below which its label is centred."""
 
@@ -41,7 +60,22 @@ BESIDE = 0.4
 def gearbox_layout_figures(
     meshes: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers
 ) -> tuple[Figure, ...]:
-    """The machine with the forces at rest of the table `meshes` of stage ratings."""
+    """Draw the machine with its forces at rest.
+
+    Parameters
+    ----------
+    meshes : DataFrame
+        Table `meshes` of stage ratings.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth and sizes of the pair.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     drives = (meshes["flank"] != "back").astype(float)
     loads = pd.DataFrame({"mesh": meshes["mesh"], "mean_n": meshes["force_n"].abs()})
     loads = loads.assign(drive_fraction=drives, back_fraction=1.0 - drives)
@@ -49,10 +83,25 @@ def gearbox_layout_figures(
 
 
 def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame | None = None) -> Figure:
-    """One panel a face gear, upper on top; tables as the hunting cycle's.
+    """Draw a layout seen from above: a panel for each face gear, the upper one on top.
 
-    Red: mean tangential force of each pinion on the gear; green: mean force on bearings, of the pinions
-    (tangential) inside the upper gear, of the gear from its centre, where they are given.
+    Red: mean tangential force of each pinion on the gear. Green, if bearings are given: mean force on the
+    bearings, of the pinions (tangential) inside the upper gear, of the gear from its centre.
+
+    Parameters
+    ----------
+    layout : Layout
+        Places and roles of pinions and gears.
+    meshes : DataFrame
+        Mean load, N, and fractions of the time on either flank of each mesh, as in table `meshes` of stage
+        hunting.
+    bearings : DataFrame or None
+        Mean forces on bearings, N, as in table `bearings` of stage hunting.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     loads = meshes.set_index("mesh")
     forces = None if bearings is None else bearings.set_index("body")
@@ -78,6 +127,9 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
 
 
 def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float) -> Panel:
+    """Return the panel of face gear `g`: rim, pinions, forces and labels. `metres`: arrow length of one
+    newton.
+    """
     gear, radius = layout.gears[g], layout.mesh_radius
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     marks: list[Mark] = [
@@ -127,7 +179,7 @@ def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | N
 
 
 def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
-    """Text beside a pinion, outside the gear: it begins at the rim, whatever its length."""
+    """Return the text beside a pinion, outside the gear; it begins at the rim, whatever its length."""
     x, y = outwards
     look: Look = {
         "across": "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right",
@@ -138,18 +190,20 @@ def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
 
 
 def _turn_arrow(radius: float, turns: float) -> Arrow:
+    """Return a curved arrow at a radius (m) that shows in which sense (sign of `turns`) the gear turns."""
     ends = np.radians([200.0, 250.0]) if turns > 0.0 else np.radians([250.0, 200.0])
     start, stop = ((radius * np.cos(a), radius * np.sin(a)) for a in ends)
     return Arrow(start, stop, width=1.0, bend=0.25 * turns)
 
 
 def _arrow(start: np.ndarray, vector: np.ndarray, colour: str) -> list[Arrow]:
-    """An arrow; none for a force of zero."""
+    """Return the arrow of a force in a list; the list is empty for a force of zero."""
     end = start + vector
     return [Arrow(tuple(start), tuple(end), colour)] if np.hypot(*vector) > 0.0 else []
 
 
 def _kilo(newtons: float) -> str:
+    """Return a force in N as text in kN."""
     return format_number(newtons / 1e3)
 
 
@@ -178,8 +232,23 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
-    """Amplitudes of all DOF (m and rad alike) over the largest; of several modes their root sum of squares,
-    which does not depend on the vectors that stand for them.
+    """Return the amplitudes of all degrees of freedom in a mode, over the largest of them.
+
+    Several modes of one frequency give their root sum of squares, which does not depend on the choice of
+    their vectors.
+
+    Parameters
+    ----------
+    shapes : DataFrame
+        Table `shapes` of stage modal.
+    orders : tuple of int
+        Numbers of the modes.
+
+    Returns
+    -------
+    (dof,) array
+        Amplitudes relative to the largest one; translations in m and rotations in rad are compared as
+        numbers.
     """
     vectors = [shapes.loc[shapes["order"] == order, "amplitude_m_or_rad"].to_numpy() for order in orders]
     if len(vectors) == 1:
@@ -223,6 +292,7 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
 
 
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
+    """Return the title of a mode's panel: numbers, frequency and symbols."""
     if len(orders) == 1:
         return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
     order_text = (
@@ -249,132 +319,12 @@ def modal_figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figu
     return (mode_shapes(frequencies, shapes),)
 
 
-SHAFT, BORE, PINION = grey(0.75), WHITE, ORANGE
 CURVES: Mapping[str, tuple[str, str, LineStyle]] = {
     "x": ("tangential to the gear (x)", BLUE, "solid"),
     "y": ("along the gear's axis (y)", RED, "dash"),
 }
+"""Legend, colour and line of the deflection in each direction."""
+
+
 MARGIN = 0.06
 """Room beside a shaft, in its length."""
-
-
-def shafts_figures(
-    bearings: pd.DataFrame,
-    deflections: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
-    width_mm: float | None,
-) -> list[Figure]:
-    """One figure with a pair of panels for each shaft; none without shafts. `width_mm`: of the pinions."""
-    sections = {pinion.name: transmission.shaft_of(pinion) for pinion in transmission.pinions}
-    shaft_sections = {name: section for name, section in sections.items() if section is not None}
-    if not shaft_sections:
-        return []
-    radius = 1e3 * teeth.pinion_base_radius / np.cos(teeth.pressure_angle)
-    return [shafts_figure(shaft_sections, bearings, deflections, float(radius), width_mm)]
-
-
-def shafts_figure(
-    sections: Mapping[str, ShaftSection],
-    bearings: pd.DataFrame,
-    deflections: pd.DataFrame,
-    radius_mm: float,
-    width_mm: float | None,
-) -> Figure:
-    """Above: a shaft with its bearings and the forces on them; below: its deflections. Shafts alike in all
-    of that share a pair of panels.
-    """
-    panels = []
-    for names in _group_equal_shafts(sections, bearings, deflections):
-        section = sections[names[0]]
-        margin = MARGIN * section.length_mm + 0.5 * (width_mm or 0.0)
-        along = Axis(
-            "Along the shaft, from its inner end outwards", "mm", low=-margin, high=section.length_mm + margin
-        )
-        positions = [
-            Line(at, colour=grey(0.6), line="dot")
-            for at in (section.pinion_mm, *(bearing.at_mm for bearing in section.bearings))
-        ]
-        forces = bearings[bearings["pinion"] == names[0]]
-        side, reach = _side_view(section, forces, radius_mm, width_mm)
-        height = Axis("", "", low=-1.1 * reach, high=1.1 * reach)
-        shaft_deflections = deflections[deflections["pinion"] == names[0]]
-        curves = [
-            Curve(shaft_deflections["at_mm"], shaft_deflections[f"{key}_um"], words, colour, line)
-            for key, (words, colour, line) in CURVES.items()
-        ]
-        panels += [
-            Panel(along, height, [*positions, *side], title=", ".join(names), height=1.5, bare=True),
-            Panel(along, Axis("Deflection", "µm"), [*positions, *curves], height=1.2),
-        ]
-    keys = [
-        Key("pinion", PINION, area=True, opacity=0.7),
-        Key("bearing and radial force on it", line="none", marker="triangle-up"),
-    ]
-    return Figure(panels, shared_x=False, keys=keys)
-
-
-def _group_equal_shafts(
-    sections: Mapping[str, ShaftSection], bearings: pd.DataFrame, deflections: pd.DataFrame
-) -> list[list[str]]:
-    """Names of pinions with equal shafts that carry and deflect alike."""
-    groups: list[tuple[ShaftSection, Array, list[str]]] = []
-    for name, section in sections.items():
-        forces = bearings.loc[bearings["pinion"] == name, "radial_n"].to_numpy(dtype=float)
-        displacements = deflections.loc[deflections["pinion"] == name, ["x_um", "y_um"]].to_numpy(dtype=float)
-        numbers = np.concatenate([forces, displacements.ravel()])
-        for group_section, group_shape, names in groups:
-            if group_section == section and np.allclose(numbers, group_shape, rtol=1e-4, atol=1e-3):
-                names.append(name)
-                break
-        else:
-            groups.append((section, numbers, [name]))
-    return [names for *_, names in groups]
-
-
-def _side_view(
-    section: ShaftSection,
-    bearings: pd.DataFrame,
-    radius_mm: float,
-    width_mm: float | None,
-) -> tuple[list[Area | Curve | Text], float]:
-    """Marks of a shaft with its pinion, bearings and forces, and how far (mm) it reaches from its axis."""
-    marks: list[Area | Curve | Text] = []
-    begin = 0.0
-    for segment in section.segments:
-        for diameter, colour in ((segment.diameter_mm, SHAFT), (segment.bore_mm, BORE)):
-            if diameter > 0.0:
-                box = _box(begin, segment.length_mm, 0.5 * diameter)
-                marks.append(Area(*box, colour=colour, outline=grey(0.3)))
-        begin += segment.length_mm
-    width = width_mm or 0.0
-    pinion = _box(section.pinion_mm - 0.5 * width, width, radius_mm)
-    marks.append(Area(*pinion, colour=PINION, opacity=0.7, outline=PINION))
-    outer = max(segment.diameter_mm for segment in section.segments) / 2.0
-    forces = bearings.set_index("bearing")["radial_n"]
-    for letter, bearing in zip(forces.index, section.bearings, strict=True):
-        half = 0.5 * _diameter_at(section, bearing.at_mm)
-        for height, marker in ((-half, "triangle-up"), (half, "triangle-down")):
-            at = np.array([bearing.at_mm]), np.array([height])
-            marks.append(Curve(*at, line="none", marker=marker, size=9.0))
-        text = f"{letter}\n{format_number(1e-3 * forces[letter])} kN"
-        look: Look = {"shift": (0.0, -12.0), "across": "center", "upright": "top", "paper": True}
-        marks.append(Text(bearing.at_mm, -half, text, **look))
-    return marks, max(outer, radius_mm)
-
-
-def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
-    """Corners of a rectangle about the axis."""
-    end = begin + length
-    return np.array([begin, end, end, begin, begin]), half * np.array([-1.0, -1.0, 1.0, 1.0, -1.0])
-
-
-def _diameter_at(section: ShaftSection, at: float) -> float:
-    """Diameter (mm) at a distance from the beginning: the larger one at a step."""
-    ends = np.cumsum([0.0, *(segment.length_mm for segment in section.segments)])
-    diameters = [
-        segment.diameter_mm
-        for segment, begin, end in zip(section.segments, ends[:-1], ends[1:], strict=True)
-        if begin <= at <= end
-    ]
-    return max(diameters or [section.segments[-1].diameter_mm])

@@ -4,27 +4,49 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from facegear.arrays import Array
 from facegear.motion.plan import JumpKind
-from facegear.report.figures.colours import BLACK, BLUE, GREEN, ORANGE, RED, colour_of, grey
-from facegear.report.figures.description import Axis, Figure, Panel, apart, stems
-from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map, Text
+from facegear.report.figures.campbell import campbell, waterfall
+from facegear.report.figures.colours import BLUE, GREEN, RED, colour_of
+from facegear.report.figures.description import Axis, Figure, Panel, stems
+from facegear.report.figures.marks import Curve, Line, LineStyle, Look
 
 DIRECTION_STYLES: Mapping[str, tuple[str, LineStyle]] = {"up": (RED, "solid"), "down": (BLUE, "dash")}
+"""Colour and line of each direction of a sweep."""
+
+
 AXIS_STYLES: Mapping[str, tuple[str, LineStyle]] = {
     "x": (RED, "solid"),
     "y": (BLUE, "dash"),
     "z": (GREEN, "dot"),
 }
+"""Colour and line of each translation."""
+
+
 RMS_HEIGHT = 1.3
 """Inches of a panel of RMS over speed."""
 
 
 def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.DataFrame:
-    """Rows of one curve, ordered by speed."""
+    """Return the rows of one curve of a sweep, ordered by speed.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    direction : str
+        `up` or `down`.
+    quantity : str
+        Name of the quantity, such as `deflection_ac_rms_um`.
+    item : str
+        Name of the body or mesh.
+
+    Returns
+    -------
+    DataFrame
+        The rows.
+    """
     rows = sweep[
         (sweep["direction"] == direction) & (sweep["quantity"] == quantity) & (sweep["body_or_mesh"] == item)
     ]
@@ -59,8 +81,22 @@ def rms_axis() -> Axis:
 
 
 def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Figure:
-    """RMS (without mean) of translations, one panel for each body, first direction
-    only.
+    """Draw the RMS without mean of translations over speed, a panel for each body, of the first direction of
+    the sweep.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    bodies : sequence of str
+        Names of the bodies.
+    letters : str
+        Axes to draw, such as `xy`.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     direction = sweep["direction"].iloc[0]
     panels = []
@@ -81,8 +117,25 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
 def mesh_sweeps(
     sweep: pd.DataFrame, jumps: pd.DataFrame, pinions: Sequence[str], sides: Sequence[str]
 ) -> Figure:
-    """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps are marked, and where
-    irregular motion begins or ends.
+    """Draw the RMS without mean of mesh deflections over rising and falling speed, a panel for each mesh.
+
+    Ticks mark jumps, dotted ticks where irregular motion begins or ends.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+    jumps : DataFrame
+        Table of the jumps of the sweep.
+    pinions : sequence of str
+        Names of the pinions.
+    sides : sequence of str
+        Face gears, `upper` or `lower`.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for pinion, side in [(pinion, side) for side in sides for pinion in pinions]:
@@ -126,12 +179,26 @@ def jump_ticks(jumps: pd.DataFrame) -> Iterator[Line]:
 
 
 LINES: Mapping[str, LineStyle] = {"up": "solid", "down": "dash"}
+"""Line of each direction of a sweep, where colours tell machines apart."""
 
 
 def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]) -> Figure:
-    """RMS (without mean) of the deflections of some meshes over speed, a panel for each, a colour a machine.
+    """Draw the RMS without mean of mesh deflections over speed for several machines, a colour for each
+    machine.
 
-    `sweeps`: tidy tables of sweeps by label; drawn through: speed rising, dashed: falling.
+    A solid line is for rising speed, a dashed one for falling speed.
+
+    Parameters
+    ----------
+    sweeps : mapping of str to DataFrame
+        Tidy table of the sweep of each machine by its label.
+    meshes : sequence of str
+        Names of the meshes, a panel for each.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     speeds = speed_axis(pd.concat([sweep[["speed_rpm"]] for sweep in sweeps.values()]))
     panels = []
@@ -150,91 +217,42 @@ def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]
     return Figure(panels, title="RMS of the deflection d along the line of action without its mean")
 
 
-ORDER_LINES = (1.0, 2.0, 3.0)
-"""Multiples of the mesh frequency that are always drawn, beside those of the marks."""
-CLASS_COLOURS = {"pinion": BLUE, "face gear": ORANGE, "pinion coupled face gear": GREEN}
-
-
-def campbell(
-    frequencies: pd.DataFrame, resonances: pd.DataFrame, jumps: pd.DataFrame, teeth: int, last_rpm: float
-) -> Figure:
-    """Natural frequencies, multiples of the mesh frequency, and what the sweep found: peaks, jumps, and where
-    irregular motion begins or ends.
-    """
-    elastic = frequencies[frequencies["class"] != "rigid body"]
-    top = 1.1 * elastic["frequency_hz"].max()
-    marked_orders = pd.concat([resonances["order"], jumps["order"]]).astype(float)
-    lines = sorted(set(ORDER_LINES) | set(marked_orders[_on_line(marked_orders)]))
-    marks: list[Curve | Text] = []
-    for name, modes in elastic.groupby("class", sort=False):
-        values = 1e-3 * modes["frequency_hz"].drop_duplicates().to_numpy()
-        across = apart(np.array([0.0, last_rpm]), np.stack([values, values], axis=1))
-        marks.append(Curve(*across, str(name), CLASS_COLOURS[name], width=0.8))
-    speeds = np.array([0.0, last_rpm])
-    for order in lines:
-        marks.append(Curve(speeds, 1e-3 * order * teeth * speeds / 60.0, colour=grey(0.5), width=0.8))
-        end = min(last_rpm, 60.0 * top / (order * teeth))
-        height = order * teeth * end / 60.0
-        beyond: Look = (
-            {"shift": (2.0, 0.0)} if height < 0.99 * top else {"shift": (0.0, 2.0), "upright": "bottom"}
-        )
-        marks.append(Text(end, 1e-3 * height, f"{order:g}x", colour=grey(0.3), **beyond))
-    irregular = jumps["kind"] == JumpKind.IRREGULAR
-    marks += _marks(resonances, "speed_rpm", teeth, "circle", "peaks")
-    marks += _marks(jumps[~irregular], "speed_after_rpm", teeth, "x", "jumps")
-    marks += _marks(jumps[irregular], "speed_after_rpm", teeth, "plus", "irregular motion")
-    speed = Axis("Input speed", "rpm", low=0.0, high=last_rpm)
-    panel = Panel(speed, Axis("Frequency", "kHz", low=0.0, high=1e-3 * top), marks, height=3.8)
-    return Figure([panel], legend_title="modes by class, and what the sweep found")
-
-
-def _on_line(orders: pd.Series) -> pd.Series:
-    """Mark orders that are multiples of half the mesh frequency; motion that is not locked has others."""
-    return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
-
-
-def _marks(rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> Iterator[Curve]:
-    """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
-    unique = rows.drop_duplicates([speed, "resonance"])
-    on = _on_line(unique["order"].astype(float))
-    for mask, colour, text in ((on, BLACK, label), (~on, grey(0.6), f"{label}, off lines")):
-        if mask.any():
-            frequency = 1e-3 * unique["order"][mask] * teeth * unique[speed][mask] / 60.0
-            look: Look = {"line": "none", "marker": symbol, "size": 4.0}
-            yield Curve(unique[speed][mask], frequency, text, colour, **look)
-
-
-def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: int) -> Figure:
-    """Spectra of one mesh deflection over speed, one panel for each direction; logarithmic colour."""
-    directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
-    orders = spectra["orders"][1:]
-    amplitudes = {name: 1e6 * spectra[f"{name}_amplitude_m"][:, mesh, 1:] for name in directions}
-    top = max(values.max() for values in amplitudes.values())
-    scale = ColourScale("Amplitude, log₁₀ of µm", "", float(np.log10(1e-3 * top)), float(np.log10(top)))
-    panels = []
-    for name in directions:
-        speeds = spectra[f"{name}_speed_rpm"]
-        rank = np.argsort(speeds)
-        log_amplitudes = np.log10(np.maximum(amplitudes[name][rank], 1e-3 * top))
-        amplitude_map = Map(orders, speeds[rank], log_amplitudes, scale)
-        across = Axis("Multiple of the mesh frequency", "", low=float(orders[0]), high=float(orders[-1]))
-        up = Axis("Input speed", "rpm", low=float(speeds.min()), high=float(speeds.max()))
-        panels.append(Panel(across, up, [amplitude_map], title=f"sweep {name}", height=3.0))
-    return Figure(panels, title=f"Spectrum of the deflection, {mesh_name}")
-
-
 SIDE_STYLES: Mapping[str, tuple[str, LineStyle]] = {"upper": (RED, "solid"), "lower": (BLUE, "dash")}
+"""Colour and line of the meshes of each face gear."""
+
+
 SHOWN_CYCLES = 16
+"""Largest number of mesh cycles drawn; more would hide the curve's shape."""
+
+
 SHOWN_ORDERS = 4
+"""Largest multiple of the mesh frequency drawn."""
+
+
 APART = 0.04
 """Orders by which the lines of the two gears stand apart, so that neither hides the other."""
+
+
 VISIBLE = 1e-3
 """Lines below this fraction of the largest amplitude are not drawn."""
 
 
 def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequence[str]) -> Figure:
-    """Both meshes of each pinion over at most 16 mesh cycles, and their lines up to 4 times the mesh
-    frequency, the mean left out.
+    """Draw the deflections of both meshes of each pinion, over time and as spectra without the mean.
+
+    Parameters
+    ----------
+    response : DataFrame
+        Deflections, µm, over mesh cycles, of which at most SHOWN_CYCLES are drawn.
+    spectrum : DataFrame
+        Amplitudes, µm, over orders, drawn up to SHOWN_ORDERS times the mesh frequency.
+    pinions : sequence of str
+        Names of the pinions.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     last = float(min(SHOWN_CYCLES, response["mesh_cycle"].max()))
     cycles, orders = (
@@ -259,7 +277,7 @@ def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequenc
 
 
 def _lines(spectrum: pd.DataFrame, side: str) -> Curve:
-    """Amplitudes as lines at their orders; order 0 is the mean and left out."""
+    """Return amplitudes as vertical lines at their orders, without order 0, which is the mean."""
     colour, _ = SIDE_STYLES[side]
     rows = spectrum[(spectrum["order"] > 0.0) & (spectrum["order"] <= SHOWN_ORDERS)]
     rows = rows[rows["amplitude_um"] > VISIBLE * rows["amplitude_um"].max()]
@@ -269,7 +287,19 @@ def _lines(spectrum: pd.DataFrame, side: str) -> Curve:
 
 @dataclass(frozen=True)
 class DrawnMachine:
-    """Machine as figures show it: pinions (names), those with a panel, sides of its gears, teeth."""
+    """Names and number of teeth of a machine that its figures show.
+
+    Attributes
+    ----------
+    pinions : tuple of str
+        Names of all pinions.
+    pinions_shown : tuple of str
+        Names of the pinions that have a panel.
+    sides : tuple of str
+        Face gears, `upper` or `lower`.
+    teeth : int
+        Number of teeth of a pinion.
+    """
 
     pinions: tuple[str, ...]
     pinions_shown: tuple[str, ...]
@@ -288,9 +318,21 @@ class DrawnMachine:
 
 
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMachine:
-    """From the plain values of the config's section `transmission`.
+    """Choose the pinions that figures show.
 
-    Pinions of one role and torque stand for each other, the first is shown; where parts differ singly, all.
+    Of pinions with the same role and torque only the first is shown; all are shown where parts differ singly.
+
+    Parameters
+    ----------
+    transmission : mapping
+        Plain values of the config's section `transmission`.
+    pinion_teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    DrawnMachine
+        The names and the number of teeth.
     """
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
@@ -305,11 +347,13 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMa
 
 
 def _waterfall(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+    """Draw the spectra of the last shown pinion's first mesh."""
     mesh_name = f"{machine.pinions_shown[-1]}/{machine.sides[0]}"
     return waterfall(tables["waterfall"], machine.meshes.index(mesh_name), mesh_name, machine.teeth)
 
 
 def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+    """Draw the Campbell diagram up to the last speed of the sweep."""
     last = tables["sweep"]["speed_rpm"].max()
     return campbell(tables["frequencies"], tables["resonances"], tables["jumps"], machine.teeth, last)
 
@@ -334,9 +378,28 @@ def dynamics_figures(
     spectrum: pd.DataFrame,
     transmission: Mapping[str, Any],
     pinion_teeth: int,
-    **swept: Any,
+    **sweep_tables: Any,
 ) -> list[Figure]:
-    """Deflections at the nominal speed, and every figure of SWEEP_FIGURES from the tables `swept`."""
+    """Draw the deflections at the nominal speed, and every figure of SWEEP_FIGURES.
+
+    Parameters
+    ----------
+    response : DataFrame
+        Table `response` of stage dynamics_response.
+    spectrum : DataFrame
+        Table `spectrum` of stage dynamics_response.
+    transmission : mapping
+        Plain values of the config's section `transmission`.
+    pinion_teeth : int
+        Number of teeth of a pinion.
+    **sweep_tables : Any
+        Tables and arrays of the sweep by the names that SWEEP_FIGURES uses.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     machine = drawn_machine(transmission, pinion_teeth)
     nominal = deflections(response, spectrum, machine.pinions)
-    return [nominal, *(draw(swept, machine) for draw in SWEEP_FIGURES.values())]
+    return [nominal, *(draw(sweep_tables, machine) for draw in SWEEP_FIGURES.values())]

@@ -221,10 +221,12 @@ def level_colours(scale: ColourScale) -> list[str]:
 
 
 def _line_look(mark: Curve | Line | Key) -> Part:
+    """Return plotly's attributes of a line."""
     return {"color": mark.colour, "width": round(PIXELS * mark.width, 2), "dash": mark.line}
 
 
 def _marker(marker: str, colour: str, size: float, hollow: bool) -> Part:
+    """Return plotly's attributes of a marker."""
     symbol = SYMBOLS.get(marker, marker)
     is_open = hollow and not symbol.endswith("-open")
     across = PIXELS * size * (0.5 if marker == "dot" else 1.0)
@@ -241,6 +243,7 @@ def _identity(target: PlotlyAxes, name: str, colour: str, in_legend: bool = True
 
 
 def _curve(target: PlotlyAxes, mark: Curve) -> Iterator[Part]:
+    """Yield the trace of a curve."""
     mode = "+".join(["lines"] * (mark.line != "none") + ["markers"] * bool(mark.marker))
     look = _line_look(mark) if mark.line != "none" else {"color": mark.colour}
     yield {
@@ -258,6 +261,7 @@ def _curve(target: PlotlyAxes, mark: Curve) -> Iterator[Part]:
 
 
 def _scatter(target: PlotlyAxes, mark: Scatter) -> Iterator[Part]:
+    """Yield the trace of points of different sizes and colours."""
     marker: Part = _marker(mark.marker, mark.colour, 1.0, False)
     marker["size"] = numbers(PIXELS * np.asarray(mark.sizes), 3)
     value = ""
@@ -277,6 +281,7 @@ def _scatter(target: PlotlyAxes, mark: Scatter) -> Iterator[Part]:
 
 
 def _bars(target: PlotlyAxes, mark: Bars) -> Iterator[Part]:
+    """Yield the trace of bars, flat or upright."""
     axis = target.panel.y if mark.flat else target.panel.x
     names = {round(place_of, 6): name for place_of, name in axis.ticks}
     base = np.zeros_like(mark.lengths) if mark.base is None else mark.base
@@ -309,6 +314,7 @@ def _bars(target: PlotlyAxes, mark: Bars) -> Iterator[Part]:
 
 
 def _filled_area(target: PlotlyAxes, x: Array, y: Array, colour: str, name: str = "") -> Part:
+    """Return the trace of a filled polygon without outline."""
     return {
         "type": "scatter",
         "mode": "lines",
@@ -325,17 +331,20 @@ def _filled_area(target: PlotlyAxes, x: Array, y: Array, colour: str, name: str 
 
 
 def _band(target: PlotlyAxes, mark: Band) -> Iterator[Part]:
+    """Yield the trace of the area between two curves."""
     x, low, high = (np.asarray(values, dtype=float) for values in (mark.x, mark.low, mark.high))
     ring = np.concatenate([x, x[::-1]]), np.concatenate([low, high[::-1]])
     yield _filled_area(target, *ring, css_colour(mark.colour, mark.opacity), mark.name)
 
 
 def _area(target: PlotlyAxes, mark: Area) -> Iterator[Part]:
+    """Yield the trace of a filled polygon."""
     area = _filled_area(target, mark.x, mark.y, css_colour(mark.colour, mark.opacity), mark.name)
     yield {**area, "line": {"width": 1, "color": mark.outline}} if mark.outline else area
 
 
 def _colouring(scale: ColourScale, letter: str) -> Part:
+    """Return plotly's attributes of a colour scale."""
     positions = np.linspace(0.0, 1.0, STEPS)
     colours = scale_colours(scale.colours, positions)
     return {
@@ -347,6 +356,7 @@ def _colouring(scale: ColourScale, letter: str) -> Part:
 
 
 def _map(target: PlotlyAxes, mark: Map) -> Iterator[Part]:
+    """Yield the trace of a field in colours on a grid."""
     x, y, values = straight(mark)
     value = f"{markup(mark.scale.name)} %{{z:{VALUE_FORMAT}}} {markup(mark.scale.unit)}"
     yield {
@@ -365,6 +375,7 @@ def _map(target: PlotlyAxes, mark: Map) -> Iterator[Part]:
 
 
 def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
+    """Yield the traces of a field as filled contours."""
     levels = mark.scale.levels
     values = np.ma.masked_invalid(mark.values).clip(levels[0], None)
     between = contour_generator(mark.x, mark.y, values, fill_type=FillType.OuterOffset)
@@ -382,7 +393,7 @@ def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
 
 
 def _faces(target: PlotlyAxes, mark: Faces) -> Iterator[Part]:
-    """Areas of one colour together."""
+    """Yield the traces of coloured polygons, one for all polygons of a colour."""
     values = np.asarray(mark.values, dtype=float)
     low, high = values.min(), values.max()
     step = np.minimum(((values - low) / ((high - low) or 1.0) * STEPS).astype(int), STEPS - 1)

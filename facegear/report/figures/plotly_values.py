@@ -167,6 +167,7 @@ def straight(mark: Map) -> tuple[Array, Array, Array]:
 
 
 def _even_rows(y: Array, values: Array) -> tuple[Array, Array]:
+    """Interpolate a field, whose rows have other heights in each column, to even heights."""
     heights = np.linspace(y.min(), y.max(), ROWS)
     even = np.full((ROWS, y.shape[1]), np.nan)
     at = heights[:, None]

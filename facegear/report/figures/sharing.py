@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.build.machine_layout import ToothNumbers, layout
 from facegear.number_format import format_number
-from facegear.report.figures.colours import BLACK, BLUE, GREEN, RED, colour_of, grey, mesh_looks
+from facegear.report.figures.colours import BLACK, BLUE, GREEN, RED, colour_of, mesh_looks
 from facegear.report.figures.comparison import split_label
 from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.machine import layout_figure
@@ -17,19 +17,41 @@ from facegear.schema.transmission import Transmission
 from facegear.sharing.sharing_map import AS_GIVEN
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+"""Lines of the points of a study, in their order."""
+
+
 LABEL = {
     "inputs": "Load sharing coefficient\nof upper and lower face gear",
     "idlers": "Load sharing coefficient\nof idlers and tail rotor idler",
 }
+"""Label of the coefficient's axis by kind of group."""
+
+
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
 
 def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str) -> Figure:
-    """Coefficient against time over one mesh cycle.
+    """Draw the load sharing coefficient of a group over one mesh cycle, a curve for each point of a study.
 
     Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
     instants at which no path carries load. Of several groups of a kind the first is drawn, as in the paper.
+
+    Parameters
+    ----------
+    curves : DataFrame
+        Coefficients of one study over time, s, with their envelopes.
+    summary : DataFrame
+        Mean, half width and class of motion of each point.
+    kind : str
+        Kind of group, `inputs` or `idlers`.
+    title : str
+        Title of the study.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     rows = curves[curves["kind"] == kind]
     group = rows["group"].iloc[0]
@@ -52,7 +74,7 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
 
 
 def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band | Curve]:
-    """One point's curve, its envelope if it has one, and its name with mean and class of motion."""
+    """Yield one point's curve, its envelope if it has one, and a name with mean and class of motion."""
     colour = colour_of(number)
     if mean["motion"] == "period-1":
         curve = _close_cycle(curve)
@@ -67,7 +89,7 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
 
 
 def _close_cycle(curve: pd.DataFrame) -> pd.DataFrame:
-    """The samples of one cycle of a motion that repeats with it, with the end of the cycle."""
+    """Return the samples of one cycle of a period-one motion with its first sample repeated at the end."""
     end = curve.iloc[[0]].copy()
     end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
     return pd.concat([curve, end], ignore_index=True)
@@ -79,7 +101,24 @@ def load_sharing_figures(
     titles: Sequence[str],
     groups: Sequence[str],
 ) -> list[Figure]:
-    """A figure for each study and kind of group."""
+    """Draw a figure for each study and kind of group.
+
+    Parameters
+    ----------
+    studies : sequence of DataFrame
+        Curves of each study.
+    summary : DataFrame
+        Means and classes of motion of all studies.
+    titles : sequence of str
+        Title of each study.
+    groups : sequence of str
+        Kinds of groups, `inputs` or `idlers`.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     return [
         sharing_figure(table, summary, kind, title)
         for table, title in zip(studies, titles, strict=True)
@@ -88,12 +127,28 @@ def load_sharing_figures(
 
 
 CYCLE_LINES: Mapping[str, LineStyle] = {"geometric": "solid", "printed": "dash"}
+"""Line of each kinematics."""
+
+
 MAX_BARS = 20
 """Bars of the sensitivity chart."""
 
 
 def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
-    """Share of its group's load that each mesh carries, mean of each mesh cycle, one panel a group."""
+    """Draw the share of its group's load that each mesh carries in each mesh cycle, a panel for each group.
+
+    Parameters
+    ----------
+    cycles : DataFrame
+        Mean load of each mesh in each mesh cycle, N.
+    meshes : DataFrame
+        Group of each mesh.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for group in [name for name in meshes["group"].dropna().unique() if name]:
         names = meshes.loc[meshes["group"] == group, "mesh"]
@@ -115,7 +170,19 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
 
 
 def bearing_figure(scan: pd.DataFrame) -> Figure:
-    """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
+    """Draw K_gamma over the bearing stiffness of the inputs (top) and of the idlers (below), for both
+    kinematics.
+
+    Parameters
+    ----------
+    scan : DataFrame
+        Table `scan` of stage hunting.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for role in ("inputs", "idlers"):
         curves = []
@@ -132,7 +199,19 @@ def bearing_figure(scan: pd.DataFrame) -> Figure:
 
 
 def sensitivity_figure(table: pd.DataFrame) -> Figure:
-    """The largest sensitivities dK/d(um), one bar an error: that of the group which answers most."""
+    """Draw the largest sensitivities of K_gamma, a bar for each error: that of the group whose factor changes
+    most.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Change of K_gamma of each group by each error, 1/µm.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     largest = table.loc[table.groupby("error")["per_um"].apply(lambda rows: rows.abs().idxmax())]
     rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(MAX_BARS)[::-1]
     positions = np.arange(len(rows), dtype=float)
@@ -163,7 +242,23 @@ def hunting_figures(
     transmission: Transmission,
     teeth: ToothNumbers,
 ) -> tuple[Figure, ...]:
-    """Layout of the machine with its mean forces, loads over the hunting cycle, bearings, single errors."""
+    """Draw the layout with its mean forces, loads over the hunting cycle, K_gamma over bearings,
+    sensitivities.
+
+    Parameters
+    ----------
+    meshes, bearings, cycles, scan, sensitivity : DataFrame
+        Tables of stage hunting and its sensitivities.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth and sizes of the pair.
+
+    Returns
+    -------
+    tuple of Figure
+        The figures.
+    """
     return (
         layout_figure(layout(transmission, teeth), meshes, bearings),
         hunting_figure(cycles, meshes),
@@ -179,122 +274,72 @@ FLOATING: Mapping[str, tuple[str, str]] = {
     "both": ("both gears float", GREEN),
 }
 """Name and colour of each curve of the idlers."""
+
+
 OTHER_LEVELS: Mapping[int, LineStyle] = {50: "dash", 99: "dashdot"}
 """Percentiles that are drawn beside P95 for the machine as given."""
+
+
 ALL_CARRY = 1.0 - 1e-9
 """Fraction of samples in which every path carries, from which the closed form may hold."""
+
+
 HOLDS = 0.02
 """Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
+
+
 CLOSED_NAME = "closed form"
-
-
-def sharing_map_figures(
-    curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame
-) -> tuple[Figure, ...]:
-    """Describe the map.
-
-    Parameters
-    ----------
-    curves, inputs, points : pd.DataFrame
-        Tables of stage sharing_map.
-
-    Returns
-    -------
-    tuple of Figure
-        The figure.
-    """
-    return (sharing_map_figure(curves, inputs, points),)
-
-
-def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> Figure:
-    """Describe a panel for the idlers, and one for the inputs.
-
-    Parameters
-    ----------
-    curves, inputs, points : pd.DataFrame
-        Tables of stage sharing_map.
-
-    Returns
-    -------
-    Figure
-        Closed forms are broad grey lines where they hold; the machine is a point at each torque.
-    """
-    panels = []
-    if len(curves):
-        number, factor = Axis("Lateness of idlers kₑ σ / W", ""), Axis("Kᵧ of the idlers", "")
-        marks = [*_idlers(curves), _machine(points, "idlers")]
-        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
-    if len(inputs):
-        number, factor = Axis("Misfit of inputs 2 b k / W", ""), Axis("Largest Kᵧ of the inputs", "")
-        marks = [*_inputs(inputs), _machine(points, "inputs")]
-        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
-    return Figure(panels, title="Load sharing over what decides it, at rest", shared_x=False)
-
-
-def _machine(points: pd.DataFrame, kind: str) -> Curve:
-    """The machine at each of its torques."""
-    rows = points[points["kind"] == kind]
-    at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
-    return Curve(*at, "this machine", BLACK, "none", marker="circle", size=7.0)
-
-
-def _idlers(curves: pd.DataFrame) -> list[Curve]:
-    """P95 for each floating gear; for the machine as given the other percentiles as well."""
-    broad: list[Curve] = []
-    marks: list[Curve] = []
-    for floating, rows in curves.groupby("floating", sort=False):
-        words, colour = FLOATING[str(floating)]
-        number = rows["number"].to_numpy()
-        if _is_close(rows):
-            broad.append(_closed_form(number, rows["closed_p95"], not broad))
-        marks.append(Curve(number, rows["k_gamma_p95"].to_numpy(), f"idlers, P95, {words}", colour))
-        if floating == AS_GIVEN:
-            for level, line in OTHER_LEVELS.items():
-                values = rows[f"k_gamma_p{level}"].to_numpy()
-                marks.append(Curve(number, values, f"idlers, P{level}, {words}", colour, line, width=0.9))
-    return broad + marks
-
-
-def _is_close(rows: pd.DataFrame) -> bool:
-    """Whether the closed form holds for a curve as long as every path carries."""
-    valid = rows[rows["all_carry"] >= ALL_CARRY]
-    return bool((valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs().max() < HOLDS)
-
-
-def _inputs(inputs: pd.DataFrame) -> list[Curve]:
-    """The input that shares worst, for each bearing stiffness."""
-    broad: list[Curve] = []
-    marks: list[Curve] = []
-    worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
-    for index, (bearing, rows) in enumerate(worst.groupby("bearing_n_per_m")):
-        number, factor = rows["number"].to_numpy(), rows["k_gamma"].to_numpy()
-        if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS:
-            broad.append(_closed_form(number, rows["closed"], not broad))
-        name = f"inputs, bearings {1e-6 * float(bearing):.3g} N/µm"
-        marks.append(Curve(number, factor, name, colour_of(index)))
-    return broad + marks
-
-
-def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
-    """A broad line below the computed one, in the legend once."""
-    return Curve(number, values.to_numpy(), CLOSED_NAME, grey(0.8), width=4.0, in_legend=is_first)
+"""Legend of the closed form."""
 
 
 MARKERS = ("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+"""Markers of the meshes by colour."""
+
+
 WIDE = 30.0
 """Ratio of the largest number to the smallest from which the axis is logarithmic."""
+
+
 PERIODIC = "period-1"
+"""Class of a motion that repeats with the mesh cycle."""
 
 
 def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
-    """A figure for each study over numbers; cells without text may be nan, as they are read."""
+    """Draw a figure of mesh forces for each study whose axis is a number.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Table `forces` of stage load_sharing; empty texts may be nan, as they are read from csv.
+    titles : mapping of str to str
+        Title of each study by its name.
+
+    Returns
+    -------
+    list of Figure
+        The figures.
+    """
     text = {name: forces[name].astype(object).where(forces[name].notna(), "") for name in ("group", "beside")}
     every = forces.assign(**text).groupby("study", sort=False)
     return [forces_figure(rows, titles[str(name)]) for name, rows in every]
 
 
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
-    """Two panels for each label of the other axis: fraction of the group's load, largest force."""
+    """Draw two panels for each label of the other axis of a study: fraction of the group's load, largest
+    force.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Rows of one study of table `forces` of stage load_sharing.
+    title : str
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     looks = mesh_looks(dict.fromkeys(forces["mesh"]))
     name, unit = split_label(str(forces["axis"].iloc[0]))
     if unit == "N/m":
@@ -326,7 +371,7 @@ def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
 def _curves(
     rows: pd.DataFrame, looks: Mapping[str, Any], column: str, scale: float, in_legend: bool = True
 ) -> Iterator[Curve]:
-    """A curve a mesh; hollow marks where the motion does not repeat with the mesh cycle."""
+    """Yield a curve for each mesh; hollow marks show where the motion does not repeat with the mesh cycle."""
     colours = list(dict.fromkeys(look["colour"] for look in looks.values()))
     for mesh, every in rows.groupby("mesh", sort=False):
         look = looks[str(mesh)]

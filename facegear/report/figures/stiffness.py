@@ -136,9 +136,13 @@ def load_figures(table: pd.DataFrame) -> tuple[Figure, ...]:
 
 
 LINES = 8
+"""Number of curves of the law's force over the phase."""
 POSITIONS = 96
+"""Number of phases of a mesh cycle at which the law is drawn."""
 DEPTHS = 60
+"""Number of deflections at which the law is drawn."""
 LAW_COLOURS = (RED, BLUE, GREEN, PURPLE)
+"""Colours of the laws, in their order."""
 
 
 def force_lines(law: Arrays) -> Figure:
@@ -292,7 +296,7 @@ def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Se
 
 
 def law_load_figures(
-    loads: pd.DataFrame, sweep: pd.DataFrame, others: Sequence[pd.DataFrame], labels: Sequence[str]
+    loads: pd.DataFrame, sweep: pd.DataFrame, other_sweeps: Sequence[pd.DataFrame], labels: Sequence[str]
 ) -> list[Figure]:
     """Draw the loads in the table and, where studies have other laws, the sweeps of all of them.
 
@@ -304,7 +308,7 @@ def law_load_figures(
         Table `loads` of stage law_loads.
     sweep : pd.DataFrame
         Table `sweep` of stage dynamics_sweep.
-    others : Sequence[pd.DataFrame]
+    other_sweeps : Sequence[pd.DataFrame]
         Tables `sweep` of the cases with other laws.
     labels : Sequence[str]
         Labels of this machine's law and of the others'.
@@ -315,9 +319,9 @@ def law_load_figures(
         The figures.
     """
     law_figures = [loads_in_table(loads)]
-    if others:
+    if other_sweeps:
         side = loads["mesh"].str.rpartition("/")[2]
         law_figures.append(
-            swept_laws([sweep, *others], labels, loads["mesh"][side == side.iloc[-1]].tolist())
+            swept_laws([sweep, *other_sweeps], labels, loads["mesh"][side == side.iloc[-1]].tolist())
         )
     return law_figures

@@ -15,19 +15,23 @@ from facegear.report.figures.motion import DIRECTION_STYLES
 PART_SHOWN = 0.02
 """Fraction of the largest stress above which the passage is drawn."""
 BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
+"""Bodies in words."""
 COLOURS = {"pinion": BLUE, "face_gear": ORANGE}
+"""Colour of each body."""
 LINES: Mapping[str, LineStyle] = {
     "finite elements": "solid",
     "ISO 6336-3": "dash",
     "contact analysis": "solid",
     "ISO 6336-2": "dash",
 }
+"""Line of each method of rating."""
 MARKS = {
     "finite elements": "circle",
     "ISO 6336-3": "x",
     "contact analysis": "square",
     "ISO 6336-2": "triangle-up",
 }
+"""Marker of each method of rating."""
 
 
 def passage_figure(table: pd.DataFrame) -> Figure:
@@ -67,6 +71,7 @@ def along_face_figure(table: pd.DataFrame) -> Figure:
 
 
 def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
+    """Draw stress over a coordinate, a panel for each body, a colour for each torque."""
     torques = np.sort(table["torque_n_m"].unique())
     panels = []
     for body, name in BODIES.items():
@@ -169,7 +174,7 @@ def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
 
 
 def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
-    """The flank of all pinions, and of all face gears, that is nearest to each limit."""
+    """Return for pinions and face gears the flank that is nearest to each limit."""
     spare = rating["safety"] / rating["required"]
     return rating.loc[
         spare.groupby([rating["gear"], rating["failure"], rating["method"]], sort=False).idxmin()
@@ -177,12 +182,13 @@ def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
 
 
 def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
-    """Rows about the same body, flank, failure and method."""
+    """Return the rows of a table on the same body, flank, failure and method as another row."""
     keys = ("body", "flank", "failure", "method")
     return table[np.logical_and.reduce([table[key] == getattr(row, key) for key in keys])]
 
 
 def _subject(row: Any) -> str:
+    """Return body, flank and method of a rating in words."""
     body = BODIES.get(row.body, row.body.capitalize())
     return f"{body}, {row.flank} flank, {row.method}"
 
@@ -231,14 +237,29 @@ PANELS = {
     "pressure_mpa": ("Pressure", "MPa"),
     "dynamic_factor": ("Dynamic factor", ""),
 }
+"""Columns drawn over speed, with name and unit."""
 BRANCH: Look = {"colour": grey(0.6), "line": "none", "marker": "dot", "size": 3.0}
+"""Look of stable branches."""
 BEYOND = "beyond the torques of the contact analysis"
+"""Legend of the shaded range."""
 
 
 def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
-    """Largest values of all meshes: the sweep's as lines, stable branches as dots beneath.
+    """Draw the largest values of all meshes over speed: the sweep as lines, stable branches as dots beneath.
 
-    The operating speed is a line; what lies beyond the torques of the contact analysis is shaded.
+    The operating speed is a line. Values beyond the torques of the contact analysis are shaded.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of stage stress_over_speed.
+    speed_rpm : float
+        Operating speed, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     branch_rows = table[table["motion"].str.startswith("branch ")]
     rows_within_torques = table[table["within_torques_solved"]]
@@ -263,5 +284,18 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
 
 def stress_over_speed_figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Figure, ...]:
-    """Root stress, pressure and dynamic factor over speed."""
+    """Draw root stress, pressure and dynamic factor over speed.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of stage stress_over_speed.
+    speed_rpm : float
+        Operating speed, rpm.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     return (stress_over_speed(table, speed_rpm),)

@@ -14,7 +14,9 @@ from facegear.report.figures.description import Axis, Figure, Panel, apart
 from facegear.report.figures.marks import Area, Bars, ColourScale, Curve, Levels, LineStyle, Look, Solid, Text
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+"""Colours of pinion and face gear, as in all drawings of teeth."""
 AZIMUTH, ALTITUDE = np.radians([150.0, 50.0])
+"""Direction of the light on the pair in mesh, rad."""
 LIGHT = np.array([np.cos(AZIMUTH) * np.cos(ALTITUDE), np.sin(AZIMUTH) * np.cos(ALTITUDE), np.sin(ALTITUDE)])
 """Direction from which the pair in mesh is lit."""
 LABEL_GAP = 0.1
@@ -32,7 +34,20 @@ RADII: Mapping[str, LineStyle] = {
 
 
 def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
-    """Pinion and gear in mesh, from `geometry/pair.json` and `flanks.npz`."""
+    """Draw pinion and gear in mesh.
+
+    Parameters
+    ----------
+    record : mapping
+        Content of `geometry/pair.json`.
+    flanks : mapping of (n, m, 3) arrays
+        Arrays of `geometry/flanks.npz`, m.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     design = record["design_si"]
     pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
     pinion = np.concatenate([_quads(grid) for grid in _pinion_skin(flanks, design["pinion"]["bore_radius"])])
@@ -60,13 +75,26 @@ def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure
 
 
 def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
-    """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
+    """Draw sections of both teeth with limits and radii.
+
+    Parameters
+    ----------
+    record : mapping
+        Content of `geometry/pair.json`.
+    flanks : mapping of (n, m, 3) arrays
+        Arrays of `geometry/flanks.npz`, m.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = [_pinion_section(record, flanks), _gear_sections(record, flanks)]
     return Figure(panels, shared_x=False, legend_title="face gear tooth at radius")
 
 
 def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
-    """Grids (profile, 2, 3) of one tooth from space to space: its surface and the end that is looked at."""
+    """Return grids (profile, 2, 3) of a pinion tooth from space to space: surface and visible end."""
     half = flanks["pinion_section"][::8]
     section = np.concatenate([half[::-1], half * [-1, 1]])
     first, last = flanks["pinion_flank"][0, [0, -1], 1]
@@ -78,7 +106,7 @@ def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
 
 
 def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
-    """Grids (profile, width, 3) of one tooth from space to space: its surface and its inner end."""
+    """Return grids (profile, width, 3) of a gear tooth from space to space: its surface and its inner end."""
     right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
     middle = np.stack([radius * np.sin(pi / teeth), radius * np.cos(pi / teeth), right[-1, :, 2]], axis=-1)
@@ -90,20 +118,24 @@ def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
 
 
 def _turned_pinion(points: Array, angle: float) -> Array:
+    """Rotate points (..., 3) about the pinion's axis by an angle (rad)."""
     c, s = np.cos(angle), np.sin(angle)
     return points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
 
 
 def _turned_gear(points: Array, angle: float) -> Array:
+    """Rotate points (..., 3) about the gear's axis by an angle (rad)."""
     c, s = np.cos(angle), np.sin(angle)
     return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T
 
 
 def _quads(grid: Array) -> Array:
+    """Return the quadrilaterals (cells, 4, 3) between the points of a grid (n, m, 3)."""
     return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
 
 
 def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a pinion tooth's section with its radii."""
     half = 1e3 * flanks["pinion_section"]
     tooth = np.concatenate([half[::-1], half * [-1, 1]])
     foot = half[:, 1].min() - 1.5
@@ -127,7 +159,19 @@ def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> P
 
 
 def path_text(record: Mapping[str, Any]) -> str:
-    """Where the contact path lies along the face, and the nominal place where errors of assembly move it."""
+    """Say in words where the contact path lies along the face, and its nominal place where assembly errors
+    move it.
+
+    Parameters
+    ----------
+    record : mapping
+        Content of `geometry/pair.json`.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     path = np.asarray(record["unloaded"]["drive"]["path_pinion_y_mm"], dtype=float)
     nominal = float(record["radii_mm"]["gear_contact_path_nominal"])
     text = f"contact path at {path.mean():.3f} mm"
@@ -135,6 +179,7 @@ def path_text(record: Mapping[str, Any]) -> str:
 
 
 def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a gear tooth's sections at three radii, with its limits."""
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
@@ -161,7 +206,22 @@ def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Pa
 def separation(
     record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
 ) -> Figure:
-    """Gap of the unloaded pair over the gear's flank, with the contact path, from all of `geometry/`."""
+    """Draw the gap of the unloaded pair over the gear's flank, with the contact path.
+
+    Parameters
+    ----------
+    record : mapping
+        Content of `geometry/pair.json`.
+    flanks : mapping of (n, m, 3) arrays
+        Arrays of `geometry/flanks.npz`, m.
+    contact : mapping of (...) arrays
+        Arrays of `geometry/contact.npz`, SI units.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     is_facing = contact["contour_facing"].astype(bool)
     gap = np.where(is_facing, 1e6 * contact["contour_gap"], np.nan)
     # places outside the flank have no gap, yet a map wants coordinates everywhere
@@ -199,7 +259,22 @@ def separation(
 def tooth_pair_figures(
     pair: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
 ) -> tuple[Figure, ...]:
-    """Both gears in mesh, sections of both teeth, separation around the contact path."""
+    """Draw both gears in mesh, sections of both teeth, and the separation around the contact path.
+
+    Parameters
+    ----------
+    pair : mapping
+        Content of `geometry/pair.json`.
+    flanks : mapping of (n, m, 3) arrays
+        Arrays of `geometry/flanks.npz`, m.
+    contact : mapping of (...) arrays
+        Arrays of `geometry/contact.npz`, SI units.
+
+    Returns
+    -------
+    tuple of Figure
+        The figures.
+    """
     return tooth_pair(pair, flanks), tooth_sections(pair, flanks), separation(pair, flanks, contact)
 
 
@@ -207,7 +282,9 @@ AXES = {
     "pinion": (("From the middle of the face", "mm"), ("Length of roll", "mm")),
     "face_gear": (("Gear radius", "mm"), ("Depth below the tip plane", "mm")),
 }
+"""Names and units of the axes of a flank chart, along the face and along the profile."""
 EXCESS_COLOUR, LACK_COLOUR = RED, BLUE
+"""Colours of material added and missing."""
 HEIGHT = 0.14
 """Height of the largest deviation, in parts of the profile."""
 
@@ -248,7 +325,7 @@ def topography_figure(points: pd.DataFrame, body: str) -> Figure:
 
 
 def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
-    """Grid lines of one flank, lifted by what they deviate."""
+    """Return the grid lines of one flank, each point displaced by its scaled deviation, and a scale bar."""
     table = flank.pivot_table(index="profile_mm", columns="face_mm", values="deviation_um")
     face, profile, values = table.columns.to_numpy(float), table.index.to_numpy(float), table.to_numpy()
     up = HEIGHT * np.ptp(profile) * (-1.0 if flank["body"].iloc[0] == "face_gear" else 1.0) / (largest or 1.0)
@@ -276,18 +353,19 @@ def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
 
 
 def _between(face: Array, flat: Array, lifted: Array) -> tuple[Array, Array]:
-    """Rings between each flat line and the lifted one, parted by nan."""
+    """Return the outlines of the areas between each flat line and its displaced line, separated by nan."""
     across = np.concatenate([face, face[::-1]])
     return apart(across, np.concatenate([flat, lifted[:, ::-1]], axis=1))
 
 
 def _round_below(value: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above a value."""
+    """Return the largest of 1, 2, 5 times a power of ten that is not above a value."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
 
 
 def _range(flank: pd.DataFrame) -> str:
+    """Return the smallest and largest deviation of a flank as text, µm."""
     values = flank["deviation_um"]
     return f"{format_number(values.min())} to {format_number(values.max())} µm"
 
@@ -309,7 +387,21 @@ def topography_figures(points: pd.DataFrame) -> tuple[Figure, ...]:
 
 
 def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
-    """Two panels a gear whose teeth differ: the drive flank over a turn, and the orders of its turns."""
+    """Draw two panels for each gear whose teeth differ: the drive flank over a turn, and the orders of the
+    gear's turns.
+
+    Parameters
+    ----------
+    curves : mapping of (n,) arrays
+        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+    orders : DataFrame
+        Table `orders` of stage tooth_errors.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for body in orders["body"].unique():
         name, curve = body.replace("_", " "), 1e6 * curves[f"{body}_drive_m"]
@@ -337,5 +429,18 @@ def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
 
 
 def tooth_errors_figures(curves: Arrays, orders: pd.DataFrame) -> tuple[Figure, ...]:
-    """The figure."""
+    """Draw the figure of teeth that differ from the others of their gear.
+
+    Parameters
+    ----------
+    curves : mapping of (n,) arrays
+        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+    orders : DataFrame
+        Table `orders` of stage tooth_errors.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     return (tooth_error_figure(curves, orders),)

@@ -12,6 +12,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import Band, Bars, Curve, Line, LineStyle, Look, Span
 
 BAR_COLOURS = (*COLOURS[1:], BLACK)
+"""Colours of the bars, in their order."""
 PERCENTILE_LINES: Mapping[float, LineStyle] = {
     50.0: "dot",
     95.0: "dash",
@@ -19,6 +20,7 @@ PERCENTILE_LINES: Mapping[float, LineStyle] = {
     5.0: "dash",
     1.0: "solid",
 }
+"""Line of each percentile."""
 MAX_PANELS = 4
 """Worst paths that are drawn, beside what comes once a machine."""
 FRICTION_QUANTITIES = ("friction_loss_w", "contact_temperature_c", "smallest_film_um")
@@ -31,6 +33,7 @@ ONCE = (
     "te_peak_to_peak_um",
     *FRICTION_QUANTITIES,
 )
+"""Quantities that are drawn once for the machine, not for each group."""
 DECISIVE_QUANTITIES = (
     "pressure_mpa",
     "root_stress_face_gear_mpa",
@@ -39,6 +42,7 @@ DECISIVE_QUANTITIES = (
 )
 """Shown with the causes that decide them, beside the worst path; without them the largest mesh force is."""
 BARS = 12
+"""Largest number of causes with a bar."""
 WORDS = {
     "k_gamma": ("Kᵧ of", ""),
     "k_v": ("Kᵥ of", ""),
@@ -296,6 +300,7 @@ def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFram
 
 
 def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Line | Span]:
+    """Yield the fraction of samples above each value, with percentiles and their intervals."""
     sorted_values = np.sort(values)
     above = 100.0 * (1.0 - np.arange(1, sorted_values.size + 1) / sorted_values.size)
     for row in percentiles.itertuples():

@@ -12,26 +12,46 @@ from facegear.report.figures.description import NARROW, Axis, Figure, Key, Panel
 from facegear.report.figures.marks import Area, Curve, Faces, LineStyle, Look, Mark, Scatter, Text
 
 OTHER_MODES = "other"
+"""Kind of a mode that is no wave of a gear."""
 WORDS = {
     "standing": "standing waves",
     "forward": "forward waves",
     "backward": "backward waves",
     OTHER_MODES: "other modes",
 }
+"""Kinds of modes in words."""
 IN_WAVES = 0.25
 """Part of the kinetic energy in the waves of one gear above which a mode is coloured and marked as theirs;
 two equal gears may share a mode in halves."""
 COLOURS = {"standing": grey(0.3), "forward": RED, "backward": BLUE, OTHER_MODES: grey(0.75)}
+"""Colour of each kind of mode."""
 MARKERS = {"standing": "circle", "forward": "triangle-up", "backward": "triangle-down"}
-"""Of crossings: their area grows with the square of how far the phases of the meshes add up."""
+"""Marker of a crossing by its kind of wave; its area grows with the square of the phase factor."""
 MARK_SIZE = 6.0
+"""Size of a crossing's marker where all phases add up, points."""
 
 
 def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
-    """Frequencies of the machine's modes over pinion speed with mesh harmonics.
+    """Draw the frequencies of the machine's modes over pinion speed, with mesh harmonics.
 
     Marks: crossings with a mode whose energy is in the waves of a gear, larger where the phases of the meshes
-    add up; those that no phase drives have no mark.
+    add up. Crossings that no phase excites have no mark.
+
+    Parameters
+    ----------
+    campbell : DataFrame
+        Frequencies of the modes over speed.
+    crossings : DataFrame
+        Table of crossings with mesh harmonics.
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     waves = crossings[crossings["energy_fraction"] >= IN_WAVES]
     bending = campbell[campbell["energy_fraction"] >= IN_WAVES]
@@ -114,7 +134,16 @@ def wave_key(kind: str) -> Key:
 
 
 def frame(marks: Sequence[Mark], last_rpm: float, top: float) -> Panel:
-    """Return the panel of frequencies up to `top` (Hz) over speed.
+    """Return the panel of frequencies over speed.
+
+    Parameters
+    ----------
+    marks : sequence of Mark
+        Content of the panel, kHz over rpm.
+    last_rpm : float
+        Last speed of the axis, rpm.
+    top : float
+        Largest frequency of the axis, Hz.
 
     Returns
     -------
@@ -126,6 +155,7 @@ def frame(marks: Sequence[Mark], last_rpm: float, top: float) -> Panel:
 
 
 def _wave(line: pd.DataFrame) -> str:
+    """Return the kind of wave of a mode's line over speed: `standing`, `forward` or `backward`."""
     if not line["nodal_diameters"].mode().iloc[0]:
         return "standing"
     return "forward" if np.median(line["forward_fraction"]) >= 0.5 else "backward"
@@ -134,20 +164,51 @@ def _wave(line: pd.DataFrame) -> str:
 def gear_waves_figures(
     campbell: pd.DataFrame, campbell_crossings: pd.DataFrame, last_rpm: float, teeth: int
 ) -> tuple[Figure, ...]:
-    """Modes of the whole machine over speed."""
+    """Draw the modes of the whole machine over speed.
+
+    Parameters
+    ----------
+    campbell : DataFrame
+        Frequencies of the modes over speed.
+    campbell_crossings : DataFrame
+        Table of crossings with mesh harmonics.
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
     return (machine_campbell(campbell, campbell_crossings, last_rpm, teeth),)
 
 
 SWING = 0.08
 """Largest displacement drawn, in the section's radial width."""
 COLUMNS = 2
+"""Number of columns of panels of mode shapes."""
 
 
 def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
-    """The first mode of every order up to the last stored, drawn on the section; one gear, as most are alike.
+    """Draw the first mode of every nodal diameter on the gear's section; one gear, as most machines have
+    equal gears.
 
-    Grey: at rest; colour: at a crest of the wave, exaggerated; the brighter, the larger the motion, that
-    round the axis included.
+    Grey: at rest. Colour: at a crest of the wave, exaggerated; the brighter, the larger the motion, rotation
+    about the axis included.
+
+    Parameters
+    ----------
+    modes : DataFrame
+        Table `modes` of stage gear_bodies.
+    shapes : mapping of (...) arrays
+        Arrays of stage gear_bodies (see `facegear.parts.body_tables.shape_arrays`); nodes in m.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     gear = str(modes["gear"].iloc[0]) if len(modes) else next(iter(shapes)).rpartition("_")[0]
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
@@ -171,7 +232,7 @@ def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
 
 
 def _section(nodes: Array, quads: AnyArray, shape: Array) -> list[Area | Faces]:
-    """The section at rest, and displaced, exaggerated."""
+    """Return the section at rest, and displaced by the exaggerated mode shape."""
     swing = SWING * np.ptp(nodes[:, 0]) / np.abs(shape).max()
     displaced_nodes = nodes + swing * shape[:, [0, 2]]
     size = np.linalg.norm(shape, axis=1)[quads].mean(axis=1)
@@ -254,8 +315,11 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
 
 
 def _gear_bodies_wave(frequency: float, middle: float, shift: float, at: float, speeds: Array) -> Array:
-    """A wave's frequency over speed: its middle's square and its shift grow with the speed squared and with
-    the speed, from their values at the speed `at`.
+    """Return a wave's frequency, Hz, over `speeds`: its square and its shift grow with the speed squared and
+    the speed.
+
+    `frequency` is at rest; `middle` (mean of forward and backward wave) and `shift` hold at the speed `at`,
+    Hz and rpm.
     """
     over = speeds / at
     return np.asarray(
@@ -295,7 +359,9 @@ def gear_bodies_figures(
 
 
 GEARS = {"pinion": BLUE, "face_gear": RED}
+"""Colour of the orders of each gear's turns."""
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+"""Lines of the largest orders."""
 ORDERS_SHOWN = 3
 """Orders of each gear that are drawn over speed."""
 
@@ -364,7 +430,7 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
 
 
 def _over_speed(rows: pd.DataFrame, colour: str, name: str) -> Iterator[Curve]:
-    """The orders whose forces become largest."""
+    """Yield the force over speed of the ORDERS_SHOWN orders with the largest forces."""
     peaks = rows.groupby("order")["force_n"].max().nlargest(ORDERS_SHOWN)
     for line, order in zip(LINES, np.sort(peaks.index), strict=False):
         order_rows = rows[rows["order"] == order]

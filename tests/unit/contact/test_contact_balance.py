@@ -19,7 +19,7 @@ from facegear.contact.search import find_candidates
 from facegear.contact.teeth import elastic_tooth
 from facegear.sparse.matrices import solve_sparse
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 CUTS = Refinement(2, 1, 2, 2.0)
 TORQUE = 400.0

@@ -20,7 +20,7 @@ from facegear.contact.search import cover_of, facing_points, find_candidates
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.opposite import locate_hits
 from facegear.teeth.separation import separation
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 PLACES = [{}, {"offset": 3e-4}, {"shaft_angle_error": 3.5e-3}]
 LIMIT = 1.2e-3

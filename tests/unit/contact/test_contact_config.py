@@ -87,7 +87,7 @@ def test_a_torque_that_is_too_small_for_the_mesh_is_named_with_the_smallest_that
     ) as refused:
         sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
         check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=(40.0, 1000.0)))
-    enough = float(refused.value.allowed.split("at least ")[1].split(":")[0])
+    enough = float(refused.value.requirement.split("at least ")[1].split(":")[0])
     assert not accepted(0.99 * enough) and accepted(1.01 * enough)
 
 

@@ -26,7 +26,7 @@ from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, Relief
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_points
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 from validation.contact.half_space import half_space, pressures
 from validation.contact.strip_study import strip_at
 

@@ -18,7 +18,7 @@ from facegear.errors import FacegearError
 from facegear.meshing.stiffness_curve import load_table
 from facegear.teeth.clearance import smallest_gaps
 from facegear.teeth.closest import PAIRS
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 
 def test_interfering_pair_is_stiffened_by_its_fillets_and_the_switch_shows_it(model_of):

@@ -23,7 +23,7 @@ from facegear.schema.base import parse
 from facegear.schema.stiffness import MeshStiffness
 from facegear.teeth.clearance import smallest_gaps
 from facegear.teeth.design import AssemblyErrors, Relief
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 TORQUES = [100.0, 600.0]
 

@@ -13,7 +13,7 @@ from facegear.pipeline.needs import shared_sources, stage_needs
 from facegear.pipeline.outcome import Outcome
 from facegear.pipeline.results.store import Store
 from facegear.pipeline.stages import contact as contact_stage
-from facegear.pipeline.stages import teeth as compliance_stage
+from facegear.pipeline.stages import tooth_bodies as compliance_stage
 from facegear.teeth.design import AssemblyErrors, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
 

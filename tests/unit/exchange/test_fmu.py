@@ -22,6 +22,7 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 
 import facegear
+from facegear.door.outputs import machine_of
 from facegear.exchange.fmu import IDENTIFIER, unique_words, write_fmu
 from facegear.machine.disturbances import PARTS, Excitation, MeshFriction
 from facegear.machine.flanks import mesh_contacts
@@ -60,7 +61,7 @@ def machine(kind):
         clearance = replace(perfect(layout), bearing_clearance=np.full(5, 1e-5))
         return make_machine(layout, torque=100.0, imperfections=clearance)
     if kind == "coupled":
-        return facegear.load("config/shafts.yaml", None)._machine()
+        return machine_of(facegear.load("config/shafts.yaml", None))
     if kind == "excited":
         return replace(make_machine(layout), excitations=(Excitation(1, 46.0, 23, 400.0, 0.4),))
     flanks = OpenFlanks(kind) if kind in set(OpenFlanks) else OpenFlanks.CONTACT_ONLY
@@ -165,7 +166,7 @@ def test_deflections_and_forces_in_fmpy_are_those_of_our_own_integrator(folder_o
 @pytest.mark.parametrize("changes", [{}, {"transmission.pinion.clearance_um": 20}])
 def test_bearing_forces_settle_to_those_of_the_response(tmp_path, changes):
     gearbox = facegear.load("config/branches.yaml", None).with_values(changes)
-    model, speed = build_model(gearbox._machine()), gearbox.values["dynamics"]["speed_rpm"]
+    model, speed = build_model(machine_of(gearbox)), gearbox.values["dynamics"]["speed_rpm"]
     response = simulate(model, speed, Settings(tolerance=1e-10))
     assert response.label == "period-1" and response.orbit.spectral_radius**SETTLED < 1e-6
     expected = bearing_history(model, response).reshape(response.per_period, -1)

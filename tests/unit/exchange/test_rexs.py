@@ -9,16 +9,8 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.exchange.rexs import (
-    LOST_CONTENT,
-    Shaft,
-    Spur,
-    Unit,
-    gear_unit,
-    known_of_rexs,
-    read_rexs,
-    write_rexs,
-)
+from facegear.exchange.rexs import LOST_CONTENT, Shaft, Spur, Unit, gear_unit, read_rexs, write_rexs
+from facegear.exchange.rexs_pinions import known_of_rexs
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
 KNOWN = {

@@ -16,7 +16,7 @@ from facegear.lubrication.kinematics import line_kinematics, pinion_pose, slip, 
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.placement import body_rotation, pinion_to_gear
 from facegear.teeth.surfaces import fillet_points, flank_points
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 PAIR = pair_design()
 RATIO = 23 / 143

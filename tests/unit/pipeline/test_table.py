@@ -15,7 +15,7 @@ from facegear.build.machine import MachineInputs
 from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.needs import resolved_needs, stage_needs, stages_before
 from facegear.pipeline.provenance.fingerprint import reached_functions
-from facegear.pipeline.reported import REPORT_TABLES, table_name
+from facegear.pipeline.report_tables import REPORT_TABLES, table_name
 from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES, listing
 from facegear.report.case_texts import SHAFT_TABLES

@@ -71,7 +71,7 @@ def test_motions_of_the_viewer_are_those_of_the_modes_to_a_part_in_thirty_thousa
 def test_the_page_with_mode_shapes_stays_small_and_names_each_control(disc):
     view = body_view(*disc)
     text = render("Case", "Lead", [Chapter("Modes", "", view=view)])
-    assert len(view.packed()) < 2e4
+    assert len(view.compressed_data()) < 2e4
     (stored,) = re.findall(r'<script type="application/gzip">(.*?)</script>', text, re.DOTALL)
     assert json.loads(gzip.decompress(base64.b64decode(stored)))["modes"][1]["order"] == 2
     asked = set(re.findall(r'find\("(\w+)"\)', text))

@@ -5,7 +5,8 @@ import re
 
 import pandas as pd
 
-from facegear.report.case import bins_in_words, mode_rows, with_study_titles
+from facegear.report.case import mode_rows, with_study_titles
+from facegear.report.chapter_tables import bins_in_words
 from facegear.report.page import Chapter, Picture, render
 from facegear.report.table import Table
 

@@ -9,7 +9,7 @@ from playwright.sync_api import sync_playwright
 
 from facegear.report.case import case_report
 from facegear.report.figures.draw_matplotlib import save
-from facegear.report.figures.sharing import sharing_map_figure
+from facegear.report.figures.sharing_map import sharing_map_figure
 
 pytestmark = [
     pytest.mark.xdist_group("browser"),

@@ -61,7 +61,7 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
 @against(
     "analytic",
     "turns times meshes of a turn",
-    capability="duty_loads rating",
+    capability="rating",
     module="facegear.strength.duty",
 )
 def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():

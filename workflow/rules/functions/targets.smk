@@ -1,5 +1,5 @@
 from facegear.pipeline import machine_conditions, studies
-from facegear.pipeline.reported import REPORT_TABLES
+from facegear.pipeline.report_tables import REPORT_TABLES
 
 
 def files_of(rule, case):
@@ -23,7 +23,9 @@ def report_tables(wildcards):
     case = case_of(wildcards.case)
     wanted = [(name, file) for name, files in REPORT_TABLES.items() for file in files]
     tables = [path for one in wanted for path in where_made(*one)(wildcards)]
-    tables += [shared("duty_loads", "duty_loads")(wildcards)] if machine_conditions.machine_loads(case) else []
+    tables += (
+        [shared("duty_loads", "duty_loads")(wildcards)] if machine_conditions.machine_loads(case) else []
+    )
     return tables + (files_of(rules.scorecard, wildcards.case)[:1] if REPRODUCTION else [])
 
 

@@ -207,6 +207,8 @@ struct ActiveSetSolver {
         for (std::size_t i = 0; i < touching.index.size(); ++i) {
             change[touching.index[i]] = touching.turning[i] / touching.stiffness;
         }
+        // The factor of an ill-conditioned matrix loses digits, which corrections by the true distances
+        // restore.
         touching.refine(problem, force, distance);
         touching.refine(problem, force, distance);
         fill_distances(problem, force, touching.rotation, distance);
@@ -220,12 +222,14 @@ struct ActiveSetSolver {
         for (Index step = 1; step <= limits.newton_steps; ++step) {
             if (!touching.solve(problem, active, force)) return {};
             fill_distances(problem, force, touching.rotation, distance);
+            // A penetration of rounding size must not bring a point in: it would leave in the next step.
             const double edge = -limits.tolerance * scale(problem);
             following.resize(active.size());
             for (Index i = 0; i < problem.points(); ++i) {
                 following[i] = active[i] ? force[i] > 0.0 : distance[i] < edge;
             }
             if (following == active) return finish(problem, step);
+            // A set that comes again would come for ever; the exchange cannot cycle and takes over.
             if (std::find(earlier.begin(), earlier.end(), following) != earlier.end()) return {};
             if (!drives(problem, following)) return {};
             earlier.push_back(following);
@@ -258,6 +262,7 @@ struct ActiveSetSolver {
         target.resize(force.size());
         for (Index step = 0; step < exchange_steps(problem.points()); ++step) {
             if (!touching.solve(problem, active, target)) return {};
+            // Points are released before one is added: only feasible forces lower the energy.
             if (release(target)) continue;
             force = target;
             fill_distances(problem, force, touching.rotation, distance);

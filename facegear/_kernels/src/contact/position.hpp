@@ -57,9 +57,13 @@ struct PositionSolver {
         bool unsolved = result.forward > 0;
         strip_functions.clear();
         force.reset(static_cast<Index>(torques.size()), 0);
+        // The strip is a guess. If functions beside it would penetrate, it is solved again with these and a
+        // wider strip around them. No function leaves the strip, so that the loop ends at the latest with all
+        // of them.
         for (double width = strip.width; unsolved; width *= strip.wider) {
             choose_strip(points);
             fill_influence(strip_forces, points.teeth, surfaces, coupled, two_sided, matrix);
+            // Beyond the limit candidates are missing, so that a larger limit is tried before any check.
             if (!solve_strip(torques, limit, strip, result)) break;
             unsolved = check_others(points, strip, limit, width * strip.wider, result);
         }
@@ -144,6 +148,7 @@ struct PositionSolver {
         column.resize(functions.count());
         of_column.assign(pairs * cover.columns, infinite);
         for (Index i = 0; i < functions.count(); ++i) {
+            // Rotation opens functions without a positive lever arm: no rotation closes them.
             if (!(functions.lever_arm[i] > 0.0)) continue;
             turn[i] = functions.gap[i] / functions.lever_arm[i];
             double& least = of_column[column_of(i)];
@@ -171,6 +176,7 @@ struct PositionSolver {
             in_strip[i] = known || expected(i, strip.gap * limit, strip.width);
             drives = drives || (in_strip[i] && functions.lever_arm[i] > 0.0);
         }
+        // A strip in which no lever arm is positive cannot carry a torque: it would have no equilibrium.
         if (!drives) in_strip.assign(functions.count(), 1);
     }
 
@@ -212,6 +218,8 @@ struct PositionSolver {
             start[i] = expected(strip_functions[i], strip.begin * limit, strip.begin_width);
         const OwnedTable& influence = matrix;
         ContactProblem problem{influence.view(), strip_gap, strip_arm, 0.0};
+        // From the largest torque down: its contact is widest, and each solution is a good first guess of the
+        // next.
         for (std::size_t t = 0; t < torques.size(); ++t) {
             problem.torque = torques[t];
             const ContactSolution solution = active_set.solve(problem, start, limits);
@@ -220,6 +228,7 @@ struct PositionSolver {
             result.slope[t] = solution.slope;
             result.residual[t] = solution.residual;
             std::copy_n(active_set.force.begin(), count, force.row(static_cast<Index>(t)));
+            // The first torque turns furthest; if the limit holds for it, it holds for all.
             if (solution.steps == 0 || result.rotation[0] > limit) return false;
             // the next torque begins with the points that would still press if the same ones touched
             const double following = torques[std::min(t + 1, torques.size() - 1)] - torques[t];
@@ -238,6 +247,8 @@ struct PositionSolver {
         double longest = 0.0;
         for (Index i = 0; i < functions.count(); ++i) {
             longest = std::max(longest, std::fabs(functions.lever_arm[i]));
+            // A body gives way but never comes nearer: a gap that the rotation alone leaves open stays open,
+            // and its approach is not computed.
             Index cases = 0; // up to the last torque whose rotation would close the gap
             for (Index t = 0; t < (in_strip[i] ? 0 : count); ++t) {
                 if (functions.gap[i] < result.rotation[t] * functions.lever_arm[i]) cases = t + 1;
@@ -264,6 +275,8 @@ struct PositionSolver {
             in_strip[i] = deepest > limits.tolerance;
             missed = missed || in_strip[i];
         }
+        // A missed function shows that the strip is too narrow there; its neighbours join at once, as each
+        // would be missed in the next round.
         for (const Index i : others.row) {
             if (missed && expected(i, strip.gap * limit, wider)) in_strip[i] = 1;
         }

@@ -18,6 +18,8 @@ typename L::S rest_of_period(Work<L, Law>& w) {
     for (int machine = 0; !breaks.empty() && machine < L::machines; ++machine) {
         const double s = w.phase[machine];
         Index piece = 0;
+        // A phase that rounding leaves just below a break belongs to the next piece: the step up to the break
+        // would have no length.
         while (piece < static_cast<Index>(breaks.size()) - 2 && s >= breaks[piece + 1] - rounding) ++piece;
         w.piece[machine] = piece;
         w.ahead[machine] = s - breaks[piece];
@@ -33,6 +35,7 @@ void expand_last_forces(Work<L, Law>& w) {
     if (w.last_force < w.order - 1) return;
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         const auto touching = absolute(w.side.at(0, b));
+        // A block whose contacts all are open has no force to expand.
         if (positive_lanes(touching) == 0) continue;
         for (Index i = w.order - 1; i <= w.last_force; ++i) {
             const auto force = w.law.force(w.deflection, i, b);
@@ -48,6 +51,7 @@ typename L::S start_step(Work<L, Law>& w) {
     const typename L::S rest = rest_of_period(w);
     expand_excitation(w, w.rows);
     for (Index b = 0; b < w.active.width; ++b) w.active.put(0, b, L::V::splat(0.0));
+    // Displacement and velocity are all that is known before the recurrence, and all that states need first.
     for (Index row = 0; row < 2; ++row) {
         w.products.deflect(w.y, row, &w.error, w.deflection);
         if (w.rings.count() > 0) w.rings.expand(w.deflection, w.active, row);
@@ -62,6 +66,7 @@ typename L::S start_step(Work<L, Law>& w) {
 template <class L, class Law>
 bool correct(Work<L, Law>& w) {
     bool changed = w.shape->opens && correct_states(w);
+    // Another state may lie in another piece of the law; parting is judged by the forces of that piece.
     if (changed) w.law.expand_pieces(w.expansion, w.state, w.rows);
     if (w.shape->push_only) changed = correct_parting(w) || changed;
     return changed;
@@ -73,16 +78,24 @@ template <class L, class Law>
 void advance(Work<L, Law>& w) {
     using S = typename L::S;
     const S rest = start_step(w);
+    // A contact that begins on the edge of a state goes where its first coefficient that is not zero points
+    // to. That coefficient depends on the states of all contacts, so that states and the first few
+    // coefficients are found in turns; the many others are computed once, with the states decided.
     const Index decided = std::min(deciding, w.order - 1);
     for (int guess = 1; guess <= max_guesses; ++guess) {
         recurrence(w, 0, decided, w.y, w.deflection, false);
+        // States that contradict each other would never settle: the last guess stands, and a step that ends
+        // at a switch at once corrects it.
         if (guess == max_guesses || !correct(w)) break;
     }
     recurrence(w, decided, w.order - 1, w.y, w.deflection, false);
     expand_last_forces(w);
+    // Where the step does not reach the end, but one more could, two equal steps do: the second would
+    // otherwise be a short one at full cost.
     const S length = step_length(w), half = S::splat(0.5) * rest;
     const S shared = where_positive(length - half, half, length);
     w.length = where_positive(rest - length, shared, rest);
+    // A switch is sought only now, as the polynomials need not hold beyond the step.
     until_switch(w);
 }
 

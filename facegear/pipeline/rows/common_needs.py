@@ -1,0 +1,41 @@
+"""Needs and sources that several chapters share: slices of the config, and files of earlier stages."""
+
+from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline.stage import ComputedValue, From, Needs, from_stage
+from facegear.schema.changes import TEETH
+
+PAIR: Needs = {"tooth_pair": "tooth_pair"}
+"""Need of the tooth pair."""
+MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
+"""Needs of the machine: its section, and the keys of the teeth that it takes."""
+SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
+"""Need of the operating speed."""
+ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
+"""Need of the accuracy of motions."""
+SWEEP: Needs = {"sweep": "dynamics.sweep"}
+"""Need of the range of speeds."""
+OPTIONS = ComputedValue(arguments.load_sharing_options, ("load_sharing",))
+"""Settings by which load sharing is averaged."""
+SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
+"""Needs of load sharing at the operating speed."""
+
+FLANKS = {name: From("compliance", "arrays", wildcards={"body": name}) for name in conditions.BODIES}
+"""Compliance of both bodies' flanks."""
+LAW = {"law": From("mesh_law", "law", when=conditions.load_dependent)}
+"""Load-dependent mesh law, where the config asks for it."""
+POSES = {"poses": From("pose_surface", "surface", when=conditions.poses)}
+"""Contact over pose, where meshes stand where the machine's own forces put them."""
+MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
+"""Mesh stiffness, and the mesh law where the config asks for it."""
+HARMONICS = {**MESHES, **POSES}
+"""Sources of the mesh stiffness and of its contact over pose."""
+BODIES = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
+"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend."""
+TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=conditions.single_teeth)}
+"""Teeth that deviate from the others."""
+MOTION_INPUTS = {
+    **HARMONICS,
+    **BODIES,
+    "friction": From("lubrication", "excitation", when=machine_conditions.friction_in_motion),
+}
+"""Sources of everything that stages take that compute the motion of the machine."""
