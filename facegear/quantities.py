@@ -1,6 +1,11 @@
-"""Names of the quantities that one machine among many is judged by."""
+"""Names that tables and files share: the two bodies of a pair, quantities by which a machine is judged."""
 
 from collections.abc import Sequence
+from typing import Literal
+
+Body = Literal["pinion", "face_gear"]
+BODIES: tuple[Body, ...] = ("pinion", "face_gear")
+"""Names of the bodies of a pair, pinion first."""
 
 K_GAMMA, K_V = "k_gamma", "k_v"
 """Mesh load factor and dynamic factor, with which names of paths begin."""

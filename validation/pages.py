@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from facegear.pipeline.listing import listing
+from facegear.pipeline.table import listing
 from validation import sharing_advice
 from validation.mutation.modules import mutation_tables
 from validation.mutation.modules import rows as mutation_rows

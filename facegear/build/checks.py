@@ -17,8 +17,8 @@ from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
-from facegear.teeth.backlash import normal_backlash
 from facegear.teeth.design import PairDesign
+from facegear.teeth.unloaded_contact import normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -287,7 +287,7 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     pair : ToothPair
         Section `tooth_pair` of the config.
     beside : Sequence[float]
-        Argument of `facegear.teeth.backlash.normal_backlash`: further positions, in pitches.
+        Argument of `facegear.teeth.unloaded_contact.normal_backlash`: further positions, in pitches.
 
     Returns
     -------

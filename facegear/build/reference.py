@@ -1,10 +1,13 @@
-"""Table of all config keys, for the docs.
+"""Table of all config keys, for the docs, and JSON schema of the config, for editors.
 
-Made by `python -m facegear.build.reference > docs/reference/config.md`.
+Made by `python -m facegear.build.reference > docs/reference/config.md` and
+`python -m facegear.build.reference --schema > facegear/schema/config.schema.json`.
 """
 
 import json
+import sys
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from facegear.build.config import Config
@@ -141,5 +144,20 @@ def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:
     return f" {', '.join(limits)}" if limits else ""
 
 
+SCHEMA = Path(__file__).parents[1] / "schema" / "config.schema.json"
+"""The stored copy, which is installed with the package."""
+
+
+def json_schema() -> str:
+    """Return the JSON schema of a config file, made from the models that validate it.
+
+    Returns
+    -------
+    str
+        The schema as text.
+    """
+    return json.dumps(Config.model_json_schema(), indent=1, sort_keys=True) + "\n"
+
+
 if __name__ == "__main__":
-    print(reference(), end="")
+    print(json_schema() if "--schema" in sys.argv[1:] else reference(), end="")

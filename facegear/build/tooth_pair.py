@@ -7,12 +7,12 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from facegear.bodies import BODIES, Body
 from facegear.build.flanks import Teeth, check_flanks, common_flanks, differences
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.contact.options import ContactPlan
 from facegear.contact.resolution import along_the_ellipse, estimated_memory
 from facegear.errors import ConfigError, NotConverged
+from facegear.quantities import BODIES, Body
 from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.contact import Contact, Mesh
 from facegear.schema.flanks import FlanksSection, Side, read_files

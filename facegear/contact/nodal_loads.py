@@ -13,9 +13,9 @@ import pandas as pd
 import scipy.sparse as sp
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
-from facegear.bodies import BODIES
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import LoadedPosition, Spot
+from facegear.quantities import BODIES
 from facegear.teeth.placement import body_rotation, pinion_angle, rotation
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Arrays, Integers
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 from facegear.teeth.design import PairDesign
 from facegear.teeth.limits import radius_limits
 from facegear.teeth.placement import pinion_angle, to_left_flank

@@ -5,10 +5,10 @@ memory.
 from dataclasses import replace
 from math import ceil, inf, pi, sin, sqrt
 
-from facegear.bodies import BODIES
 from facegear.contact.hertz import contact_modulus, longer_semi_axis
 from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
+from facegear.quantities import BODIES
 from facegear.teeth.curvature import smallest_radius
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_sizes import MeshSizes

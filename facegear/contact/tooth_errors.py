@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Arrays
-from facegear.bodies import BODIES, Body
 from facegear.contact.lines import contact_gaps
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.contact.teeth import ContactSide
+from facegear.quantities import BODIES, Body
 from facegear.teeth import face_gear, pinion
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import DeviationGrid, PairDesign

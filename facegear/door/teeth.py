@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from facegear.bodies import BODIES
 from facegear.door.case import Case, drop_none
 from facegear.errors import ConfigError, FacegearError, extras_named
 from facegear.pipeline.outcome import Outcome
 from facegear.pipeline.results.contact import ContactResult, MeshLawResult, StiffnessResult
 from facegear.pipeline.results.teeth import GeometryResult, ToothErrorsResult, TopographyResult
+from facegear.quantities import BODIES
 
 if TYPE_CHECKING:
     from facegear.pipeline.displaced_contact import DisplacedContact

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.bodies import BODIES, Body
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.io.atomic import atomic_path
+from facegear.quantities import BODIES, Body
 from facegear.schema.csv_file import HEADER, NOMINAL, SIDES
 from facegear.teeth.design import PairDesign
 from facegear.teeth.modifications import deviation, flank_depth

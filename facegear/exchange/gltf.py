@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.bodies import BODIES, Body
 from facegear.errors import extras_named
 from facegear.io.atomic import atomic_path
+from facegear.quantities import BODIES, Body
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import body_rotation, rotation
 from facegear.teeth.solids import solid, triangles

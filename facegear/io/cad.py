@@ -13,12 +13,17 @@ from scipy.interpolate import make_interp_spline
 from facegear.arrays import Array
 from facegear.errors import NotConverged, extras_named
 from facegear.io.atomic import atomic_path
-from facegear.io.gmsh_session import gmsh_session
 from facegear.number_format import count_noun
 
 with extras_named():
     import gmsh
     import meshio
+
+from facegear.errors import extras_named
+
+with extras_named():
+    import gmsh
+
 
 DEGREE = 3
 """Degree of the B-spline surfaces: cubic, so that curvature is continuous."""
@@ -139,3 +144,51 @@ def _surface(points: Array) -> int:
     )
     gmsh.model.occ.remove([(0, tag) for tag in tags])  # poles are no points of the solid
     return surface
+
+
+VARIABLE = "PETSC_OPTIONS"
+"""Environment variable that PETSc reads its options from."""
+NO_HANDLERS = "-no_signal_handler"
+"""Option by which PETSc leaves signals alone."""
+
+
+@contextmanager
+def gmsh_session(name: str) -> Iterator[None]:
+    """Open a session of gmsh with one empty model. gmsh is global: one session at a time.
+
+    PETSc, which gmsh brings, takes over signals when it starts and leaves them at the system's default when
+    it ends: a broken pipe would then kill the process, and faulthandler be silent. An environment variable
+    tells it not to.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+
+    Yields
+    ------
+    None
+        Once, while the session is open.
+    """
+    with _asked_of_petsc():
+        gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add(name)
+        yield
+    finally:
+        gmsh.finalize()
+
+
+@contextmanager
+def _asked_of_petsc() -> Iterator[None]:
+    """Set the environment variable by which PETSc leaves signals alone, and restore it at the end."""
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = f"{before or ''} {NO_HANDLERS}".strip()
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[VARIABLE]
+        else:
+            os.environ[VARIABLE] = before

@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import extras_named
-from facegear.io.gmsh_session import gmsh_session
+from facegear.io.cad import gmsh_session
 from facegear.number_format import count_noun
 
 with extras_named():

@@ -24,8 +24,7 @@ from facegear.lubrication.heat import (
     running_at,
     starting_bulk,
 )
-from facegear.lubrication.loss import OverTorque
-from facegear.lubrication.monotone import monotone_at
+from facegear.lubrication.loss import OverTorque, monotone_at
 from facegear.lubrication.request import Cooling, Lubrication
 
 

@@ -18,7 +18,7 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.motion.integrator.integrator import Integrator, result_of, run_machines
 from facegear.motion.integrator.kernel_system import make_runner, packed_system
-from facegear.motion.integrator.run_result import RunResult
+from facegear.motion.integrator.records import RunResult
 
 
 @dataclass(frozen=True, eq=False)

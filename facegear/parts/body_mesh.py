@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import InvalidInput, extras_named
-from facegear.io.gmsh_session import gmsh_session
+from facegear.io.cad import gmsh_session
 from facegear.parts.section import Section, thinnest
 from facegear.parts.wheel import ACROSS, require_meshable
 

@@ -3,12 +3,14 @@
 This module names no stage: the fingerprint of a rule holds it and what that rule's stage reaches alone.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from facegear.blas_threads import one_blas_thread
+from threadpoolctl import threadpool_limits
+
 from facegear.build.machine import MachineInputs
 from facegear.io.files import write_part
 from facegear.pipeline.arguments import typed_arguments
@@ -152,3 +154,19 @@ def machine_inputs(arguments: Mapping[str, Any]) -> "MachineInputs":
     inputs_by_name = {name: value for name, value in arguments.items() if name in names}
     inputs: MachineInputs = kind(**typed_arguments(kind, inputs_by_name))
     return inputs
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Limit the libraries of linear algebra to one thread; afterwards they have as many as before.
+
+    Fronts of an elimination and matrices of a contact or of a machine are small. Threads that wait for one
+    another at full speed take several times the processor time there, and on a busy machine longer as well.
+
+    Returns
+    -------
+    Iterator[None]
+        A context, with nothing to be used inside.
+    """
+    with threadpool_limits(limits=1):
+        yield

@@ -4,7 +4,10 @@ Its rows stand in `facegear.pipeline.rows`. Columns that a reader asks for are g
 reading this table loads nothing that computes.
 """
 
+from pathlib import PurePosixPath
+
 from facegear.pipeline.rows import branches, dynamics, friction, machine, sharing, strength, teeth, variants
+from facegear.pipeline.stage import ComputedValue, Need, Stage
 
 ROWS = (
     *teeth.ROWS,
@@ -22,3 +25,63 @@ ROWS = (
 
 STAGES = {stage.name: stage for stage in ROWS}
 """By name, in the order in which a case goes through them."""
+
+
+HEAD = (
+    "| stage | what it does | made where | takes from | of the config | writes |",
+    "|---|---|---|---|---|---|",
+)
+"""Head of the table of stages, in Markdown."""
+EMPTY_CELL = "-"
+"""Text of a cell without content."""
+
+
+def listing() -> str:
+    """Return the table of stages in Markdown, a row for each stage.
+
+    Returns
+    -------
+    str
+        The table.
+    """
+    source_stages = {source.stage for stage in STAGES.values() for source in stage.upstream.values()}
+    return "\n".join((*HEAD, *(_row(stage, stage.name in source_stages) for stage in STAGES.values())))
+
+
+def _row(stage: Stage, is_source: bool) -> str:
+    """Return the row of a stage in the table of stages of the documentation."""
+    before = dict.fromkeys(source.stage for source in stage.upstream.values())
+    sections = dict.fromkeys(name for need in stage.needs.values() for name in _sections(need))
+    cells = (
+        stage.title,
+        _made_where(stage, is_source),
+        ", ".join(before),
+        ", ".join(sections),
+        _files(stage),
+    )
+    return " | ".join((f"| {stage.name}", *(cell or EMPTY_CELL for cell in cells))) + " |"
+
+
+def _made_where(stage: Stage, is_source: bool) -> str:
+    """Return when a plain run makes the stage, in the words of its condition."""
+    if stage.condition:
+        text = (stage.condition.__doc__ or "").splitlines()[0]
+        return text.removeprefix("Whether ").rstrip(".").replace("Always", "always")
+    return "another stage takes from it" if is_source else "its file is asked for by name"
+
+
+def _sections(need: Need) -> list[str]:
+    """Return the sections of the config from which a need takes its value."""
+    if isinstance(need, ComputedValue):
+        return list(need.sections)
+    return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]
+
+
+def _files(stage: Stage) -> str:
+    """Paths of a stage's files; the folder stands before the first alone."""
+    paths = [PurePosixPath(file.path.replace("{", "<").replace("}", ">")) for file in stage.files.values()]
+    return ", ".join(f"`{path.name if number else path}`" for number, path in enumerate(paths))
+
+
+if __name__ == "__main__":
+    print(listing())

@@ -8,8 +8,8 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import machine_numbers
 from facegear.report.compact import Compact, error_picture, machine_picture, pattern_picture, sweep_picture
+from facegear.report.data_sheet import machine_numbers
 from facegear.report.verdicts import Verdict, flank_of, known_k_gamma, nearest_rating, status_line, verdicts
 from facegear.report.warnings import grouped_warnings
 

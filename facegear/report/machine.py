@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import ROUNDING_OF_POWER, machine_numbers
-from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
+from facegear.report.data_sheet import DATA_SHEET, ROUNDING_OF_POWER, data_sheet_table, machine_numbers
 from facegear.report.page import Chapter, Picture
 from facegear.report.table import Table
 

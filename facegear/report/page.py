@@ -17,7 +17,7 @@ import numpy as np
 
 from facegear.arrays import AnyArray
 from facegear.io import documents, pages
-from facegear.io.pictures import read_svg
+from facegear.io.pages import read_svg
 from facegear.report.first_screen import FirstScreen
 from facegear.report.table import Table
 

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import ROUNDING_OF_POWER
+from facegear.report.data_sheet import ROUNDING_OF_POWER
 from facegear.ties import first_largest_row
 
 GREEN, RED, GREY = "green", "red", "grey"

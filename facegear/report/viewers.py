@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers, Mask
-from facegear.bodies import BODIES, Body
 from facegear.contact.pattern import EDGES, SHARES
+from facegear.quantities import BODIES, Body
 from facegear.report.page import View, encode_array
 from facegear.teeth.design import PairDesign
 from facegear.teeth.solids import solid, teeth_of

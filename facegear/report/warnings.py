@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.contact.hertz import DENTED
 from facegear.contact.pattern import FILLET_CONTACT
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import nominal
+from facegear.report.data_sheet import nominal
 from facegear.teeth.design import BACKLASH_DIFFERS_UM
 
 POSITIONS_MATTER = 0.05

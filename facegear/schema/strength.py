@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.cards import CARDS, Card, read_card
 from facegear.schema.csv_file import CsvFault, read_numbers

@@ -1,6 +1,6 @@
 """Columns of the tables of root stress, apart from what computes them."""
 
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 
 FILLETS = ("loaded", "other")
 """Below the flank that is loaded when the pinion drives, and below the other flank of the same tooth."""

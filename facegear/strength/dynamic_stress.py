@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 from facegear.strength.columns import DYNAMIC_STRESS_COLUMNS, STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
 from facegear.ties import first_largest_rows

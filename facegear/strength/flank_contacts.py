@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from facegear.arrays import Array, Arrays, Integers
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension

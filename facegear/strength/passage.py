@@ -18,12 +18,12 @@ import scipy.sparse as sp
 
 from facegear._kernels import strength
 from facegear.arrays import Array, Arrays, Integers
-from facegear.bodies import BODIES, Body
 from facegear.contact.gear_flank import GearFlank, contact_model, gear_flank
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.nodal_loads import load_arrays, loads_by_tooth
 from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
+from facegear.quantities import BODIES, Body
 from facegear.strength.contact_pressure import scale
 from facegear.strength.root_stress import LONE, RootStress, down_the_fillet, root_stress
 from facegear.teeth.design import Material, PairDesign

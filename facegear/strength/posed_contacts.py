@@ -12,8 +12,8 @@ import numpy as np
 import scipy
 
 from facegear.arrays import AnyArray, Array, Arrays
-from facegear.bodies import BODIES
 from facegear.machine.poses.surface import PoseSurface
+from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact, contacts_of

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
-from facegear.bodies import BODIES
+from facegear.quantities import BODIES
 from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
     FILLETS,

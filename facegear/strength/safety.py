@@ -7,8 +7,8 @@ from math import pi, sqrt, tan
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.bodies import BODIES
 from facegear.errors import FacegearError
+from facegear.quantities import BODIES
 from facegear.strength.duty import FlankDuty
 from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits, damage
 from facegear.strength.root_form import (

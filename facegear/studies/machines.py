@@ -8,7 +8,6 @@ from typing import Any, Self
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.bodies import BODIES
 from facegear.build.lubrication import limits_of
 from facegear.build.lumped_model import lumped_parts, machine
 from facegear.build.machine import tables_of
@@ -27,7 +26,7 @@ from facegear.motion.plan import JumpRange, Settings
 from facegear.motion.steady_state.guide import Guide
 from facegear.motion.steady_state.simulate import build_model
 from facegear.motion.sweeps.whole_sweep import jump_margin
-from facegear.quantities import JUMP_MARGIN, PEAK
+from facegear.quantities import BODIES, JUMP_MARGIN, PEAK
 from facegear.schema.base import keys_named, parse
 from facegear.schema.lubrication import LubricationSection
 from facegear.schema.motion import Accuracy

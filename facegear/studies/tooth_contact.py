@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
 
-from facegear.bodies import BODIES
 from facegear.build.checks import geometric_backlash
 from facegear.build.machine import TablesOf
 from facegear.build.machine_layout import ToothNumbers
@@ -22,7 +21,7 @@ from facegear.harmonics import Harmonics
 from facegear.meshing.stiffness_curve import LoadTable, unloaded_samples
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.meshing.stiffness_source import curve_from_contact
-from facegear.quantities import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
+from facegear.quantities import BODIES, ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
 from facegear.schema.base import parse
 from facegear.schema.changes import GAPS, MODULI, without
 from facegear.schema.contact import Contact, Mesh

@@ -10,9 +10,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.arrays import Array
-from facegear.io import abaqus, meshes
+from facegear.io import meshes
 from facegear.io.atomic import atomic_path
-from facegear.io.gmsh_session import gmsh_session
+from facegear.io.cad import gmsh_session
 from facegear.teeth.mesh_quality import scaled_jacobians, volume
 from facegear.teeth.tooth_mesh import SectorMesh
 
@@ -182,7 +182,7 @@ def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataF
         cell_data={"scaled_jacobian": [jacobian], "min_sicn": [condition]},
     )
     names = [name for name in sector.tooth.faces if len(sector.faces(name))]
-    abaqus.write(
+    meshes.write_inp(
         inp,
         f"{sector.tooth.body}: {len(sector.tooth_nodes)} of {sector.tooth.teeth} teeth",
         sector.nodes,

@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.bodies import Body
+from facegear.quantities import Body
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.design import PairDesign, Relief
 from facegear.teeth.modifications import fillet_as_made, flank_as_made

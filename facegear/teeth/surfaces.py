@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array, Integers
-from facegear.bodies import Body
+from facegear.quantities import Body
 from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
 from facegear.teeth.modifications import flank_end

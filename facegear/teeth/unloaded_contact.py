@@ -1,4 +1,4 @@
-"""Unloaded contact of the pair: where the flanks touch, the transmission error, the other pairs' gaps."""
+"""Unloaded contact of the pair: where the flanks touch, transmission error, backlash, other pairs' gaps."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -10,8 +10,8 @@ from facegear.arrays import Array, Integers
 from facegear.errors import NotConverged
 from facegear.teeth.closest import PAIRS, closest
 from facegear.teeth.conjugate import exact_contact
-from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import conjugate_angle
+from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
@@ -200,3 +200,50 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
         )
     residual = np.max(np.abs(nearest.gap.min(axis=1)))
     raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", f"{MAX_TURNS} turns of the gear")
+
+
+POSITIONS = 4
+"""Number of positions of a pitch at which backlash is searched; without assembly errors it is constant."""
+
+
+@lru_cache(maxsize=256)
+def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float:
+    """Compute the backlash along the line of action, smallest of a few positions of a pitch.
+
+    Without assembly errors and deviations it is the thinning of the pinion's teeth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    beside : tuple[float, ...]
+        Positions at which `unloaded_motion` of the pair will be needed, too, in pitches: one search finds
+        both.
+
+    Returns
+    -------
+    float
+        m; negative where it jams.
+
+    Raises
+    ------
+    NotConverged
+        Where the flanks do not face each other.
+    """
+    if design.assembly == AssemblyErrors() and not (design.deviates or design.with_swapped_flanks.deviates):
+        return design.pinion.thinning
+    drive, back = exact_contact(design), exact_contact(mirror_design(design))
+    if drive is not None and back is not None:
+        return -back.transmission_error - drive.transmission_error
+    return _search_backlash(design, beside)
+
+
+def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
+    """Return the smallest play, m, of the drive and back flank over a pitch, by a search over the flanks."""
+    positions = (np.arange(POSITIONS) + 0.5) / POSITIONS
+    phi1 = pinion_angle(design, positions)
+    if beside:
+        unloaded_motion(design, pinion_angle(design, np.union1d(positions, beside)))
+    drive, _ = unloaded_motion(design, phi1)
+    back = drive if design == mirror_design(design) else unloaded_motion(mirror_design(design), phi1)[0]
+    return float(((-back[::-1] - drive) * design.gear_base_radius).min())

@@ -8,7 +8,7 @@ from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.number_format import count_noun
 from facegear.pipeline.provenance.stage import stage
-from facegear.report.figures.save import save
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.machine import inputs_in_words
 from paper.figures.claims_of import NUMBERS, claims_of
 from paper.figures.draw import draw, shown_data

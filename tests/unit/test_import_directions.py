@@ -10,13 +10,11 @@ import pytest
 pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed once a process
 PACKAGE = Path(__file__).parents[2] / "facegear"
 FOUNDATION = {
-    *("arrays", "blas_threads", "bodies", "by_content", "errors", "harmonics", "io", "number_format"),
+    *("arrays", "by_content", "errors", "harmonics", "io", "number_format"),
     *("progress", "quantities", "rigid_body", "ties", "_kernels"),
 }
 MAY_IMPORT = {
     "arrays": set(),
-    "blas_threads": set(),
-    "bodies": set(),
     "by_content": set(),
     "errors": set(),
     "number_format": set(),
@@ -164,7 +162,7 @@ def test_matplotlib_is_only_known_to_what_draws_with_it():
     """A figure is described as data; the scales of colours are matplotlib's."""
     drawing = {
         PACKAGE / "report" / "figures" / f"{name}.py"
-        for name in ("colours", "draw_matplotlib", "matplotlib_marks", "save")
+        for name in ("colours", "draw_matplotlib", "matplotlib_marks")
     }
     for module in set(MODULES) - drawing:
         assert not any(name.split(".")[0] == "matplotlib" for name in imported(module)), module

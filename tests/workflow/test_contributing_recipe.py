@@ -51,7 +51,7 @@ def test_the_recipe_makes_a_stage_that_runs_draws_and_answers(followed, tmp_path
     asked = python(followed, "-c", code, folder=tmp_path)
     assert asked.returncode == 0, asked.stderr
     assert {"gear_ratio", "modes_figures"} <= project.planned("--configfile", CONFIG, "--forceall")
-    listed = python(followed, "-m", "facegear.pipeline.listing").stdout
+    listed = python(followed, "-m", "facegear.pipeline.table").stdout
     assert "| gear_ratio | Ratio of the tooth numbers |" in listed
 
 
@@ -66,7 +66,7 @@ def test_the_recipe_gives_the_new_stage_an_independent_reference(followed):
 
 def test_the_recipe_of_a_section_makes_a_key_that_is_checked_and_documented(tmp_path):
     sources = follow(read_recipe("Add a config section"), copy_sources(tmp_path))
-    assert '"steel_eur_per_kg"' in python(sources, "-m", "facegear.build.json_schema").stdout
+    assert '"steel_eur_per_kg"' in python(sources, "-m", "facegear.build.reference", "--schema").stdout
     page = python(sources, "-m", "facegear.build.reference").stdout
     assert "| `cost.steel_eur_per_kg` | `20.0` | number above 0, to 1e+06 | price of the steel |" in page
     code = "import facegear; print(facegear.load({values}).config.cost.steel_eur_per_kg)"

@@ -46,12 +46,10 @@ def test_a_feature_of_the_machine_touches_at_most_twelve_files():
 
 
 def test_generated_files_of_the_recipe_name_the_feature(followed):
-    schema = json.loads(python(followed, "-m", "facegear.build.json_schema").stdout)
+    schema = json.loads(python(followed, "-m", "facegear.build.reference", "--schema").stdout)
     assert "thrust_pads" in schema["properties"]
     assert "`thrust_pads`" in python(followed, "-m", "facegear.build.reference").stdout
-    assert (
-        "| thrust_pads | Stiffness of the pads" in python(followed, "-m", "facegear.pipeline.listing").stdout
-    )
+    assert "| thrust_pads | Stiffness of the pads" in python(followed, "-m", "facegear.pipeline.table").stdout
 
 
 def test_every_stage_of_the_machine_takes_the_feature(followed):

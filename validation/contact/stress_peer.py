@@ -17,7 +17,7 @@ from facegear.arrays import Array, Integers
 from facegear.contact.bodies.surface import gauges_on
 from facegear.contact.root_gauges import fillet_sides
 from facegear.errors import FacegearError
-from facegear.io import abaqus
+from facegear.io import meshes
 from facegear.strength.root_stress import down_the_fillet
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_files import SERENDIPITY20
@@ -173,7 +173,7 @@ def write_stress_deck(path: Path, tooth: LoadedTooth, material: Material) -> int
     fixed_group = "bore" if tooth.mesh.body == "pinion" else "rim_back"
     hexes = mesh.hexes[:, SERENDIPITY20]
     title = f"{tooth.mesh.body}: 1 N along a line of the flank"
-    abaqus.write(path, title, mesh.nodes, hexes, {fixed_group: np.unique(mesh.faces(fixed_group))}, {})
+    meshes.write_inp(path, title, mesh.nodes, hexes, {fixed_group: np.unique(mesh.faces(fixed_group))}, {})
     labels = mesh.tooth_nodes[TEETH // 2][tooth.side.nodes.ravel()] + 1
     forces = tooth.load.reshape(-1, 3)
     on = np.flatnonzero(forces.any(axis=1))

@@ -14,13 +14,13 @@ import numpy as np
 import pandas as pd
 
 import facegear
-from facegear.bodies import BODIES
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import pair
 from facegear.contact.analysis import posed_contacts
 from facegear.contact.gear_flank import contact_model, from_arrays
 from facegear.machine.poses.surface import SURFACE_ARRAYS
 from facegear.pipeline.stages.poses import pose_surface, quantities
+from facegear.quantities import BODIES
 from facegear.teeth.design import AssemblyErrors
 from validation.poses.frozen_reactions import STEPS, frozen_reactions
 

@@ -4,7 +4,7 @@ import pandas as pd
 
 from facegear.io import tables
 from facegear.pipeline.provenance.stage import stage
-from facegear.report.figures.save import save_drawn
+from facegear.report.figures.draw_matplotlib import save_drawn
 from validation.contact.benchmark import cheapest, with_errors
 from validation.contact.refinement_levels import DEFAULT, FINEST
 from validation.plots.contact import speed_against_error

@@ -9,7 +9,7 @@ from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
 from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.report.figures.save import save_drawn
+from facegear.report.figures.draw_matplotlib import save_drawn
 from validation.dynamics.methods import all_methods, tangent_methods
 from validation.dynamics.problems import law_problems, machine_problems, oscillator_problem, tangent_problems
 from validation.dynamics.work_precision import (

@@ -5,7 +5,7 @@ import os
 from facegear.io import tables
 from facegear.pipeline.provenance.stage import stage
 from facegear.progress import Progress
-from facegear.report.figures.save import save_drawn
+from facegear.report.figures.draw_matplotlib import save_drawn
 from validation.growth.curves import CURVES
 from validation.growth.measure import exponents, growth_table, round_numbers
 from validation.plots.growth import growth_figure

@@ -11,7 +11,7 @@ with stage(snakemake) as run:
     from facegear.pipeline.arguments import typed_arguments
     from facegear.pipeline.run import read_all
     from facegear.pipeline.stage import load
-    from facegear.report.figures.save import save
+    from facegear.report.figures.draw_matplotlib import save
 
     stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
     paths = list(zip(snakemake.output.svg, snakemake.output.json, strict=True))

@@ -17,8 +17,16 @@ from facegear.motion.integrator.kernel_system import (
     packed_system,
     weights_of,
 )
-from facegear.motion.integrator.records import Extrema, Steps, extrema_of, steps_of, sums_of
-from facegear.motion.integrator.run_result import RunResult, disturbance_step, require
+from facegear.motion.integrator.records import (
+    Extrema,
+    RunResult,
+    Steps,
+    disturbance_step,
+    extrema_of,
+    require,
+    steps_of,
+    sums_of,
+)
 from facegear.motion.integrator.system import System
 from facegear.motion.plan import Settings, State
 

@@ -8,7 +8,7 @@ import numpy as np
 from facegear.arrays import Array, ComplexArray, Mask
 from facegear.motion.between_samples import by_modulus
 from facegear.motion.integrator.integrator import Integrator
-from facegear.motion.integrator.run_result import RunResult
+from facegear.motion.integrator.records import RunResult
 
 NEWTON_STEPS, MATRICES = 12, 3
 """Maximum number of Newton steps, and of matrices for them: what needs more is nowhere near an orbit."""

@@ -29,7 +29,7 @@ from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
 from facegear.report.case import case_report
-from facegear.report.figures.save import save
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.page import with_omissions
 from facegear.report.viewers import body_view
 

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays
-from facegear.bodies import BODIES, Body
 from facegear.build.plans import contact_plan, stiffness_request
 from facegear.build.tooth_pair import ToothPair, pair, pair_design, single_teeth
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
@@ -26,6 +25,7 @@ from facegear.meshing.stiffness_curve import load_table
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.number_format import count_noun, format_number
 from facegear.pipeline.outcome import Outcome
+from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
 from facegear.teeth.placement import FLANKS, distinct_pairs, pair_at

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
-from facegear.bodies import BODIES
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import met_contacts
@@ -19,6 +18,7 @@ from facegear.machine.poses.fixed_point import operating_pose as fixed_point
 from facegear.machine.poses.posed_flanks import nominal_contact
 from facegear.machine.poses.surface import PoseSurface
 from facegear.pipeline.outcome import Outcome
+from facegear.quantities import BODIES
 from facegear.schema.contact import Contact
 from facegear.strength.flank_contacts import FlankContact, contacts_of, flank_contacts
 from facegear.strength.passage import passing

@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays
-from facegear.bodies import BODIES
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import PosedContact, met_contacts, posed_contacts
@@ -35,6 +34,7 @@ from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
+from facegear.quantities import BODIES
 from facegear.schema.contact import Contact
 from facegear.strength.passage import passing
 from facegear.strength.root_stress import largest_tension

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays
-from facegear.bodies import BODIES, Body
 from facegear.build.lumped_model import stiffness_phases
 from facegear.build.machine import MachineInputs
 from facegear.build.machine_layout import ToothNumbers
@@ -22,6 +21,7 @@ from facegear.machine.statics import static_equilibrium
 from facegear.motion.between_samples import finer
 from facegear.motion.response_tables import shows_a_period
 from facegear.pipeline.outcome import Outcome
+from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact, Mesh
 from facegear.schema.strength import Strength
 from facegear.schema.transmission import Transmission

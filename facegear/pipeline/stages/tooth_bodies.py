@@ -6,7 +6,6 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.bodies import BODIES, Body
 from facegear.build.plans import mesh_sizes
 from facegear.build.tooth_pair import ToothPair, contact_setup, pair
 from facegear.contact.gear_flank import gear_flank, to_arrays
@@ -14,6 +13,7 @@ from facegear.errors import FacegearError, require_choice
 from facegear.io.cad import write_step, write_stl
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
+from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact, Mesh
 from facegear.teeth.mesh_files import write_files
 from facegear.teeth.solids import solid, teeth_of, triangles

@@ -21,7 +21,7 @@ from facegear.report.compare.judge import (
 )
 from facegear.report.compare.quantities import CURVES, Curve, declaration_of
 from facegear.report.figures.comparison import curves_compared
-from facegear.report.figures.save import save
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.page import Chapter, Picture, render
 from facegear.report.table import Table, words
 

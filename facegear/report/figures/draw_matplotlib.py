@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import ceil, log10
+from pathlib import Path
 from textwrap import fill
 from typing import Any
 
@@ -23,7 +24,9 @@ from matplotlib.ticker import (
 )
 
 from facegear.errors import FacegearError
+from facegear.io.atomic import atomic_path
 from facegear.number_format import format_number
+from facegear.report.figures import draw_plotly
 from facegear.report.figures.description import Axis, Figure, Key, Panel, entries
 from facegear.report.figures.marks import Bars, Levels, Map
 from facegear.report.figures.matplotlib_marks import DRAW, LINES, MARKERS, _colours
@@ -343,3 +346,45 @@ def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) ->
             bar = mpl_figure.colorbar(_colours(scale), ax=on, label=scale.label)
             if scale.levels:
                 bar.set_ticks(scale.levels, labels=[format_number(level) for level in scale.levels])
+
+
+def save(figure: Figure, *paths: str | Path) -> None:
+    """Write a figure to files.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    *paths : str or Path
+        Files to write. The suffix names the format: one that matplotlib knows, or `.json` for plotly.js
+        (`facegear.report.figures.draw_plotly`).
+    """
+    pages = [path for path in paths if Path(path).suffix == ".json"]
+    for path in pages:
+        with atomic_path(path) as temporary:
+            draw_plotly.write(figure, temporary)
+    if still_paths := [path for path in paths if path not in pages]:
+        save_drawn(draw(figure), *still_paths)
+
+
+def save_drawn(mpl_figure: MplFigure, *paths: str | Path) -> None:
+    """Write a drawing of matplotlib to files and close it.
+
+    The same drawing gives the same bytes, whatever other files are written: its parts are placed once, an svg
+    holds no date, and its inner names follow from a fixed salt.
+
+    Parameters
+    ----------
+    mpl_figure : matplotlib.figure.Figure
+        The drawing.
+    *paths : str or Path
+        Files to write; the suffix names the format.
+    """
+    with styled():
+        place_parts(mpl_figure)
+        for path in paths:
+            with atomic_path(path) as temporary:
+                mpl_figure.savefig(
+                    temporary, metadata={"Date": None} if Path(path).suffix == ".svg" else None
+                )
+    plt.close(mpl_figure)

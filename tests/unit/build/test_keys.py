@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import facegear
-from facegear.build.json_schema import json_schema
+from facegear.build.reference import json_schema
 from facegear.errors import ConfigError, InvalidInput
 from facegear.pipeline.run import call
 from facegear.pipeline.stage import Stage

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from facegear.build.config import Config
-from facegear.build.json_schema import SCHEMA, json_schema
 from facegear.build.load import load_config, read_layers
-from facegear.build.reference import reference
+from facegear.build.reference import SCHEMA, json_schema, reference
 from facegear.errors import ConfigErrors
 from facegear.schema.base import parse
 
@@ -16,7 +15,7 @@ ROOT = Path(__file__).parents[3]
 
 def test_schema_file_is_what_the_models_say():
     assert SCHEMA.read_text() == json_schema(), (
-        "run: python -m facegear.build.json_schema > facegear/schema/config.schema.json"
+        "run: python -m facegear.build.reference --schema > facegear/schema/config.schema.json"
     )
 
 

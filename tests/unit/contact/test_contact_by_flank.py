@@ -8,13 +8,13 @@ import pytest
 from contact_bodies import COARSE
 
 import facegear
-from facegear.bodies import BODIES
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
 from facegear.contact.gear_flank import from_arrays, gear_flank, to_arrays
 from facegear.pipeline.stages.contact import contents
 from facegear.pipeline.stages.strength import root_contents
+from facegear.quantities import BODIES
 from facegear.schema.base import parse
 from facegear.schema.contact import Contact
 from facegear.strength.root_tables import root_from_arrays

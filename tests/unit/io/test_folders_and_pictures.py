@@ -13,10 +13,10 @@ from facegear.__main__ import main
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import documents, tables
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
-from facegear.io.pictures import read_svg
+from facegear.io.pages import read_svg
 from facegear.pipeline.results.store import Store
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.figures.machine import mode_shapes
-from facegear.report.figures.save import save
 from facegear.report.page import Picture
 
 CONFIG = str(Path(__file__).parents[3] / "config" / "harmonics_only.yaml")

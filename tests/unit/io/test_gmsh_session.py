@@ -8,11 +8,11 @@ import textwrap
 import gmsh
 import pytest
 
-from facegear.io.gmsh_session import VARIABLE, gmsh_session
+from facegear.io.cad import VARIABLE, gmsh_session
 
 SESSION = """
 import faulthandler, os, signal
-from facegear.io.gmsh_session import gmsh_session
+from facegear.io.cad import gmsh_session
 faulthandler.enable()
 with gmsh_session("a"):
     pass

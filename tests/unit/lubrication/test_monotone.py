@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
-from facegear.lubrication.monotone import monotone_at
+from facegear.lubrication.loss import monotone_at
 
 
 @given(nodes=st.integers(2, 7), seed=st.integers(0, 2**32 - 1))

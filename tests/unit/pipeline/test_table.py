@@ -13,12 +13,11 @@ from facegear.build.cases import expand_cases
 from facegear.build.load import load_config
 from facegear.build.machine import MachineInputs
 from facegear.pipeline.arguments import typed_arguments
-from facegear.pipeline.listing import listing
 from facegear.pipeline.needs import resolved_needs, stage_needs, stages_before
 from facegear.pipeline.provenance.fingerprint import reached_functions
 from facegear.pipeline.report_tables import REPORT_TABLES, table_name
 from facegear.pipeline.stage import FIGURES, Case, load
-from facegear.pipeline.table import STAGES
+from facegear.pipeline.table import STAGES, listing
 from facegear.report.case_texts import SHAFT_TABLES
 
 ROOT = Path(__file__).parents[3]
@@ -145,7 +144,7 @@ def test_what_a_stage_depends_on_reaches_back_to_the_teeth():
 
 
 def test_the_page_shows_the_table_as_it_is():
-    """Renewed by `python -m facegear.pipeline.listing`."""
+    """Renewed by `python -m facegear.pipeline.table`."""
     assert listing() in (ROOT / "docs" / "reference" / "stages.md").read_text()
 
 

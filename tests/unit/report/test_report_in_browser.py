@@ -14,9 +14,9 @@ from playwright.sync_api import sync_playwright
 from facegear.report.compact import sweep_picture
 from facegear.report.figures.colours import colour_of
 from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.figures.marks import Band, ColourScale, Curve, Map
 from facegear.report.figures.motion import mesh_sweeps, translations
-from facegear.report.figures.save import save
 from facegear.report.first_screen import FirstScreen, Key
 from facegear.report.page import Chapter, Picture, data_uri, render
 from facegear.report.table import Table

@@ -8,7 +8,7 @@ from idler_machines import make_idlers
 from playwright.sync_api import sync_playwright
 
 from facegear.report.case import case_report
-from facegear.report.figures.save import save
+from facegear.report.figures.draw_matplotlib import save
 from facegear.report.figures.sharing_map import sharing_map_figure
 
 pytestmark = [

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.bodies import BODIES
 from facegear.machine.poses.surface import PoseSurface
+from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact

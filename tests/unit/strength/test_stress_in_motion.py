@@ -10,10 +10,10 @@ from references import against, agrees
 from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
-from facegear.bodies import BODIES
 from facegear.build.machine import MachineInputs
 from facegear.harmonics import Harmonics
 from facegear.machine.flanks import flank_law, flank_places
+from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import (
     FORCE_COLUMNS,

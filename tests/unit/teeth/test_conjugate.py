@@ -8,11 +8,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.teeth.backlash import normal_backlash
 from facegear.teeth.conjugate import conjugate_contact, exact_contact
 from facegear.teeth.design import Relief
 from facegear.teeth.placement import mirror_design
-from facegear.teeth.unloaded_contact import searched_contact, unloaded_contact
+from facegear.teeth.unloaded_contact import normal_backlash, searched_contact, unloaded_contact
 
 POSES = {
     (120, 0, 0.03): ((58.763527287, 264.388284, 23.213899), (159.915598075, 269.136890, 25.468187)),

@@ -12,7 +12,7 @@ import pytest
 from mesh_files import read_msh
 from references import against, agrees
 
-from facegear.io.gmsh_session import gmsh_session
+from facegear.io.cad import gmsh_session
 from facegear.teeth.mesh_files import SERENDIPITY20, VTK27, write_files
 from facegear.teeth.mesh_quality import volume
 from facegear.teeth.tooth_mesh import sector

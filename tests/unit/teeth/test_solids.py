@@ -7,9 +7,9 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.bodies import BODIES
 from facegear.errors import NotConverged
 from facegear.io.cad import write_step, write_stl
+from facegear.quantities import BODIES
 from facegear.teeth import face_gear
 from facegear.teeth.design import Relief
 from facegear.teeth.solids import solid, triangles, volume

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from facegear.report.figures.description import Axis, Figure, Panel
-from facegear.report.figures.draw_matplotlib import STYLE
+from facegear.report.figures.draw_matplotlib import STYLE, save
 from facegear.report.figures.marks import Curve
-from facegear.report.figures.save import save
 
 
 def figure():

@@ -11,10 +11,9 @@ from facegear.contact.pattern import LTCA_COLUMNS, SHARES
 from facegear.report.figures.campbell import campbell
 from facegear.report.figures.comparison import curves_compared
 from facegear.report.figures.contact import close_pitch, contact_pattern
-from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
 from facegear.report.figures.motion import deflections, drawn_machine
-from facegear.report.figures.save import save
 from facegear.report.figures.sharing import sharing_figure
 from facegear.report.figures.teeth import separation
 

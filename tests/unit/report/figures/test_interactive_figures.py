@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from facegear.report.figures.description import Axis, Figure, Panel
-from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.draw_plotly import interactive
 from facegear.report.figures.marks import (
     Area,
@@ -22,7 +22,6 @@ from facegear.report.figures.marks import (
     Span,
     Text,
 )
-from facegear.report.figures.save import save
 
 SPEED, FORCE = Axis("Pinion speed", "rpm"), Axis("RMS of d", "µm", "without its mean")
 
