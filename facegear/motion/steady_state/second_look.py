@@ -39,8 +39,10 @@ def find_disagreement(
     A run that went straight to its orbit is not in doubt, and one that is not settled claims nothing. Another
     periodic motion is looked at `second_looks` times, and further, up to MAX_LOOKS times if that is more,
     until the unsteady periods of all runs show that hardly a start would fail to close. An irregular motion
-    is looked at once, or MAX_LOOKS times (`second_looks` times if that is more) where it often seems to
-    close. Each of these runs is watched once, whatever it shows, and its window is not extended.
+    is looked at once. A look that leaves its class open does not withdraw it, since it is watched once while
+    the first run may have been watched for longer. A chaotic motion that often seems to close is looked at
+    MAX_LOOKS times (`second_looks` times if that is more), and an open look withdraws its class: there the
+    class depends on where a run is judged. A torus, too, often seems to close, but by its nature.
 
     Parameters
     ----------
@@ -67,7 +69,7 @@ def find_disagreement(
         return None
     orbit = KnownOrbit(first.orbit, run.window.ends) if first.orbit else None
     starts = other_starts(integrator, start, settings.aside, first)
-    is_doubtful = bool(first.period) or often_seems_to_close(integrator, run.watched_ends, settings)
+    is_doubtful = motion is Motion.CHAOTIC and often_seems_to_close(integrator, run.watched_ends, settings)
     for looks in range(1, max(MAX_LOOKS, settings.second_looks) + 1):
         look = yield from settling(integrator, next(starts), settings, known_orbit=orbit)
         if look.period != first.period:
@@ -75,13 +77,15 @@ def find_disagreement(
         if not first.period:
             # Two runs that do not close have the same period 0: only their classes tell them apart.
             other_motion, exponent = yield from classify_run(integrator, look, settings)
-            if other_motion is not motion:
+            contradicts = other_motion is not Motion.NOT_SETTLED or is_doubtful
+            if other_motion is not motion and contradicts:
                 periods_run = look.periods_run + len(exponent.ends)
                 return replace(look, periods_run=periods_run), Look(0, other_motion)
         unsteady_periods += count_unsteady_periods(integrator, look, look.period)
         patience = 2 * settings.settle
         is_rare = first.period > 0 and chance_of_never_closing(looks + 1, unsteady_periods, patience) < CHANCE
-        if not is_doubtful or (is_rare and looks >= settings.second_looks):
+        is_last = is_rare and looks >= settings.second_looks if first.period else not is_doubtful
+        if is_last:
             break
     return None
 

@@ -260,6 +260,36 @@ def test_an_irregular_motion_that_never_seems_to_close_is_looked_at_once(monkeyp
     assert found.motion is Motion.CHAOTIC and len(runs) == 2
 
 
+def look_once_at(monkeypatch, motion, other_motion):
+    """Return what one look at oscillator 28 finds if the first run is of a class and the look of another."""
+    oscillator = list(random_oscillators(29))[28]
+    integrator, settings = (
+        Integrator(oscillator.system, oscillator.speed),
+        Settings(second_looks=SECOND_LOOKS),
+    )
+    start = integrator.by_phase(oscillator.start)
+    run = alone(watch.watch(alone(watch.begin(integrator, start, settings))))
+
+    def classify_look(integrator, look, settings):
+        return other_motion, run.exponent
+        yield
+
+    monkeypatch.setattr(second_look, "classify_run", classify_look)
+    return alone(second_look.find_disagreement(integrator, start, settings, replace(run, motion=motion)))
+
+
+@pytest.mark.parametrize("motion", [Motion.CHAOTIC, Motion.QUASI_PERIODIC])
+def test_a_look_that_stays_open_does_not_withdraw_an_irregular_class(monkeypatch, motion):
+    """Watched for less long than the first run, it did; long runs confirmed the class nine times of ten."""
+    assert look_once_at(monkeypatch, motion, Motion.NOT_SETTLED) is None
+
+
+def test_a_look_of_another_irregular_class_withdraws_the_first(monkeypatch):
+    """Chaos and a torus were one class, because neither has a period."""
+    look, found = look_once_at(monkeypatch, Motion.CHAOTIC, Motion.QUASI_PERIODIC)
+    assert look.period == 0 and found == Look(0, Motion.QUASI_PERIODIC)
+
+
 @pytest.mark.parametrize(("number", "often"), [(201, True), (28, False)])
 def test_a_small_attractor_often_seems_to_close(number, often):
     """Number 201 comes within 0.02 of one of its 64 last states almost anywhere, number 28 nowhere."""
