@@ -16,10 +16,9 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
-
-from facegear.door.outputs import machine_of
 
 STEP_TOLERANCE = 1e-14
 """Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
@@ -31,6 +30,50 @@ SECOND_LOOKS = 12
 """Other starts that a class must come out from again: so many, where a sweep takes three, that a motion which
 one start in four comes to is hardly ever overlooked.
 """
+MODULES: dict[str, tuple[str, ...]] = {
+    "Chain": ("facegear.pipeline.results.chain", "facegear.results.chain"),
+    "PartialResults": ("facegear.pipeline.results.store", "facegear.results.partial"),
+    "Store": ("facegear.pipeline.results.store", "facegear.results.store"),
+    "mesh_frequency": ("facegear.machine.machine", "facegear.transmission.machine"),
+    "Integrator": ("facegear.motion.integrator.integrator", "facegear.dynamics.integrator.integrator"),
+    "build_model": ("facegear.motion.steady_state.simulate", "facegear.dynamics.steady_state.simulate"),
+    "static_start": ("facegear.motion.steady_state.simulate", "facegear.dynamics.steady_state.simulate"),
+    "steady_state": ("facegear.motion.steady_state.simulate", "facegear.dynamics.steady_state.simulate"),
+    "Settings": ("facegear.motion.plan", "facegear.dynamics.motion"),
+}
+"""Modules that define a name: the module of the present code, then that of the baseline of the ratios."""
+
+
+def from_facegear(*names: str) -> list[Any]:
+    """Import names from the modules that the code on the path has.
+
+    Parameters
+    ----------
+    *names : str
+        Keys of MODULES.
+
+    Returns
+    -------
+    list
+        One object for each name.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If the code on the path has none of the modules of a name.
+    """
+    return [getattr(_module(name), name) for name in names]
+
+
+def _module(name: str) -> Any:
+    for module in MODULES[name][:-1]:
+        try:
+            return import_module(module)
+        except ModuleNotFoundError as error:
+            # A library that the module itself needs and does not find is another fault.
+            if error.name is None or not f"{module}.".startswith(f"{error.name}."):
+                raise
+    return import_module(MODULES[name][-1])
 
 
 def main(job: str, answers: str, inputs: str) -> None:
@@ -57,15 +100,15 @@ def main(job: str, answers: str, inputs: str) -> None:
 def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     """Call of a stage whose inputs are computed now, or read where this code has kept them."""
     import facegear
-    from facegear.pipeline.results.chain import Chain
-    from facegear.pipeline.results.store import PartialResults, Store
     from facegear.pipeline.run import call
     from facegear.pipeline.table import STAGES
 
+    chain, store, partial_results = from_facegear("Chain", "Store", "PartialResults")
     gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
     stage = STAGES[request["stage"]]
-    arguments = Chain(gearbox.values, Store(partial=PartialResults(Path(inputs)))).arguments(stage.name)
-    return lambda: call(stage, arguments, **stage.typed_wildcards(request["wildcards"])).content
+    arguments = chain(gearbox.values, store(partial=partial_results(Path(inputs)))).arguments(stage.name)
+    convert = stage.typed_wildcards if hasattr(stage, "typed_wildcards") else getattr(stage, "typed", dict)
+    return lambda: call(stage, arguments, **convert(request["wildcards"])).content
 
 
 def _calls(request: dict[str, Any]) -> Callable[[], Any]:
@@ -98,15 +141,14 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
     """
     import numpy as np
 
-    from facegear.machine.machine import mesh_frequency
-    from facegear.motion.integrator.integrator import Integrator
-    from facegear.motion.steady_state.simulate import build_model, static_start
-
-    model = build_model(machine_of(gearbox))
+    mesh_frequency, make_integrator = from_facegear("mesh_frequency", "Integrator")
+    build_model, static_start = from_facegear("build_model", "static_start")
+    model = build_model(_machine(gearbox))
     speed = gearbox.values["dynamics"]["speed_rpm"]
     frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
-    integrator = Integrator(model.system, frequency, STEP_TOLERANCE)
-    random, basis, linear = np.random.default_rng(1), model.reduction.basis, model.machine.linear
+    integrator = make_integrator(model.system, frequency, STEP_TOLERANCE)
+    reduction = model.reduction if hasattr(model, "reduction") else model.reduced
+    random, basis, linear = np.random.default_rng(1), reduction.basis, model.machine.linear
 
     def aside(size: float) -> Any:
         """A random state (2, n) by phase whose largest mesh deflection is `size` length scales."""
@@ -126,6 +168,13 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
             "fractions": run.fractions[:, : integrator.contacts],
         }
     return ends
+
+
+def _machine(gearbox: Any) -> Any:
+    """Lumped machine of a gearbox; the baseline has a method of the gearbox for it."""
+    if hasattr(gearbox, "_machine"):
+        return gearbox._machine()
+    return import_module("facegear.door.outputs").machine_of(gearbox)
 
 
 def _neutral_part(system: Any, displacement: Any) -> Any:
@@ -149,15 +198,14 @@ def _oscillators(count: int, sources: str) -> dict[str, Any]:
     from dataclasses import replace
 
     sys.path.append(sources)
-    from facegear.motion.plan import Settings
-    from facegear.motion.steady_state.simulate import steady_state
     from validation.dynamics.oscillators import random_oscillators
 
-    looks = {"label": Settings(), "second_look": replace(Settings(), second_looks=SECOND_LOOKS)}
+    settings, steady_state = from_facegear("Settings", "steady_state")
+    looks = {"label": settings(), "second_look": replace(settings(), second_looks=SECOND_LOOKS)}
     oscillators = list(random_oscillators(count))
     return {
-        name: [steady_state(body.system, body.speed, settings, body.start).label for body in oscillators]
-        for name, settings in looks.items()
+        name: [steady_state(body.system, body.speed, look, body.start).label for body in oscillators]
+        for name, look in looks.items()
     }
 
 

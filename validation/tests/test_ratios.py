@@ -1,7 +1,9 @@
 """Ratios of processor time against an earlier commit, and what they say of the answers."""
 
+import ast
 import json
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +12,11 @@ import pytest
 
 import facegear
 from facegear.pipeline.table import STAGES
-from validation.ratios import trees
+from validation.ratios import trees, worker
 from validation.ratios.points import POINTS, Point
 from validation.ratios.run import BASELINE, COLUMNS, changes, main, ratio, read_answers
 from validation.ratios.trees import LOCK, Tree, build_package, environment, present
-from validation.ratios.worker import flat
+from validation.ratios.worker import MODULES, flat, from_facegear
 
 MOTIONS = np.array(["period-1", "chaotic", "period-2", "period-1"])
 
@@ -120,6 +122,32 @@ def test_baseline_is_a_commit_before_the_kernels():
     if not names:
         pytest.skip("no history here")
     assert "facegear/machine_code" in names and "facegear/_kernels" not in names
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_a_process_finds_its_names_in_this_code_and_in_the_baseline(name):
+    assert from_facegear(name)[0].__name__ == name
+    path = MODULES[name][-1].replace(".", "/") + ".py"
+    source = subprocess.run(["git", "show", f"{BASELINE}:{path}"], capture_output=True, text=True)
+    if subprocess.run(["git", "cat-file", "-e", BASELINE], capture_output=True).returncode:
+        pytest.skip("no history here")
+    assert source.returncode == 0, path
+    assert name in {getattr(node, "name", None) for node in ast.parse(source.stdout).body}
+
+
+def test_a_process_reads_its_clock_before_it_imports_a_library():
+    imports = ast.parse(Path(worker.__file__).read_text()).body
+    names = {node.module for node in imports if isinstance(node, ast.ImportFrom)}
+    names |= {alias.name for node in imports if isinstance(node, ast.Import) for alias in node.names}
+    assert {name.partition(".")[0] for name in names} <= sys.stdlib_module_names
+
+
+def test_a_module_that_lacks_a_library_is_not_looked_for_elsewhere(tmp_path, monkeypatch):
+    (tmp_path / "half_installed.py").write_text("import no_such_library")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setitem(MODULES, "Half", ("half_installed", "json"))
+    with pytest.raises(ModuleNotFoundError, match="no_such_library"):
+        from_facegear("Half")
 
 
 def test_numbers_of_irregular_motions_and_of_changed_labels_do_not_count_as_changes():
