@@ -13,6 +13,7 @@
 #include "motion/rings.hpp"
 #include "motion/roots.hpp"
 #include "motion/system.hpp"
+#include "motion/touching_flanks.hpp"
 
 namespace facegear::motion {
 
@@ -34,6 +35,7 @@ struct Work {
           products(*shape),
           rings(*shape, rows),
           friction(*shape, rows),
+          touching(L::machines > 1 && LawType::by_mesh ? shape->pairs : 0, rows),
           roots(steps_order),
           polynomial(rows),
           powers(rows),
@@ -116,6 +118,7 @@ struct Work {
     Products<L> products;
     Rings<L> rings;
     Friction<L> friction;
+    TouchingFlanks<L> touching;
 
     S phase = S::splat(0.0), length = S::splat(0.0); // of the step in the period, rad
     S longest = S::splat(infinity);                  // that a step may be, rad
