@@ -152,9 +152,9 @@ V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
 template <class V>
 void widen(const std::vector<V>& terms, Index order, V& minimum, V& maximum) {
     const Reach<V> reach = reach_of(terms[0], order, [&](Index i) { return terms[i]; });
-    if (positive_lanes(reach.top - maximum) != 0)
+    if (positive_lanes(reach.top(V::splat(1.0)) - maximum) != 0)
         maximum = larger(maximum, largest_over_step(terms, order, 1.0));
-    if (positive_lanes(minimum - reach.bottom) != 0)
+    if (positive_lanes(minimum - reach.bottom(V::splat(1.0))) != 0)
         minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
 }
 
