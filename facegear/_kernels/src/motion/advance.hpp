@@ -33,15 +33,25 @@ typename L::S rest_of_period(Work<L, Law>& w) {
 template <class L, class Law>
 void expand_last_forces(Work<L, Law>& w) {
     if (w.last_force < w.order - 1) return;
+    const bool kept = w.shape->push_only || w.friction.count() > 0;
+    const Table<L> deflection = w.touching.deflections(w.deflection, false);
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         const auto touching = absolute(w.side.at(0, b));
         // A block whose contacts all are open has no force to expand.
         if (positive_lanes(touching) == 0) continue;
         for (Index i = w.order - 1; i <= w.last_force; ++i) {
-            const auto force = w.law.force(w.deflection, i, b);
-            if (w.shape->push_only || w.friction.count() > 0) w.elastic.put(i, b, touching * force);
+            const auto force = w.law.force(deflection, i, w.touching.block_of(b));
+            if (kept) w.elastic.put(i, b, touching * force);
         }
     }
+}
+
+// Expand the pieces of the law that contacts are in.
+template <class L, class Law>
+void expand_pieces(Work<L, Law>& w) {
+    w.touching.choose(w.state);
+    w.touching.take(w.deflection, 0, false);
+    w.law.expand_pieces(w.expansion, w.touching, w.touching.states(w.state), w.rows);
 }
 
 // Find what drives the motions and the contact states at the phases, from rows 0 and 1 of y; the length that
@@ -57,7 +67,7 @@ typename L::S start_step(Work<L, Law>& w) {
         if (w.rings.count() > 0) w.rings.expand(w.deflection, w.active, row);
     }
     find_states(w);
-    w.law.expand_pieces(w.expansion, w.state, w.rows);
+    expand_pieces(w);
     if (w.shape->push_only) find_parting(w);
     return rest;
 }
@@ -67,7 +77,7 @@ template <class L, class Law>
 bool correct(Work<L, Law>& w) {
     bool changed = w.shape->opens && correct_states(w);
     // Another state may lie in another piece of the law; parting is judged by the forces of that piece.
-    if (changed) w.law.expand_pieces(w.expansion, w.state, w.rows);
+    if (changed) expand_pieces(w);
     if (w.shape->push_only) changed = correct_parting(w) || changed;
     return changed;
 }

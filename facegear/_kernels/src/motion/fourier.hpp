@@ -16,6 +16,37 @@ struct FourierRows {
     double at(Index kind, int part, Index term) const { return values[(kind * 2 + part) * terms + term]; }
 };
 
+// Parts of Count harmonics, which stay in registers while one row follows another.
+// (Spelled out one by one, as compilers keep arrays of vectors in memory.)
+template <class V, int Count>
+struct Harmonics {
+    V even, odd;
+    Harmonics<V, Count - 1> rest;
+
+    // parts: [even, odd][term], the mean first.
+    void load(const double* parts, Index terms) {
+        constexpr int lanes = sizeof(V) / sizeof(double);
+        even = V::load(parts + lanes);
+        odd = V::load(parts + (terms + 1) * lanes);
+        rest.load(parts + lanes, terms);
+    }
+    // The sum of the harmonics in an even or an odd row; powers: of the row, the mean first.
+    V sum_even(const double* powers) const { return rest.add_even(powers + 1, even * V::splat(powers[1])); }
+    V sum_odd(const double* powers) const { return rest.add_odd(powers + 1, odd * V::splat(powers[1])); }
+    V add_even(const double* powers, V sum) const {
+        return rest.add_even(powers + 1, even * V::splat(powers[1]) + sum);
+    }
+    V add_odd(const double* powers, V sum) const {
+        return rest.add_odd(powers + 1, odd * V::splat(powers[1]) + sum);
+    }
+};
+template <class V>
+struct Harmonics<V, 0> {
+    void load(const double*, Index) {}
+    V add_even(const double*, V sum) const { return sum; }
+    V add_odd(const double*, V sum) const { return sum; }
+};
+
 // What series of up to `terms` terms need to be expanded in `rows` coefficients at the phases of the
 // machines.
 template <class L>
@@ -86,14 +117,39 @@ class Expansion {
 
     // The first `rows` coefficients in a block of what stands in parts, [even, odd][term].
     void expand_parts(const double* parts, Index terms, Index rows, Table<L> out, Index b) const {
+        switch (terms - 1) {
+            case 1:
+                return expand_harmonics<1>(parts, rows, out, b);
+            case 2:
+                return expand_harmonics<2>(parts, rows, out, b);
+            case 3:
+                return expand_harmonics<3>(parts, rows, out, b);
+            default:
+                return expand_any(parts, terms, rows, out, b);
+        }
+    }
+    Index terms() const { return terms_; }
+
+  private:
+    template <int Count>
+    void expand_harmonics(const double* parts, Index rows, Table<L> out, Index b) const {
+        Harmonics<V, Count> harmonics;
+        harmonics.load(parts, terms_);
+        const double* powers = powers_.data();
+        double* to = out.begin(b);
+        for (Index i = 0; i < rows; i += 2, powers += 2 * terms_, to += 2 * out.stride()) {
+            harmonics.sum_even(powers).store(to);
+            if (i + 1 < rows) harmonics.sum_odd(powers + terms_).store(to + out.stride());
+        }
+        if (rows > 0) out.add(0, b, V::load(parts)); // the mean has one coefficient
+    }
+
+    void expand_any(const double* parts, Index terms, Index rows, Table<L> out, Index b) const {
         if (rows > 0) out.put(0, b, V::load(parts) + sum(parts, terms, 0)); // the mean has one coefficient
         Index i = 1;
         for (; i + 1 < rows; i += 2) expand_two(parts, terms, i, b, out);
         if (i < rows) out.put(i, b, sum(parts, terms, i));
     }
-    Index terms() const { return terms_; }
-
-  private:
     V part(const double* parts, Index i, Index j) const {
         return V::load(parts + ((i % 2) * terms_ + j) * L::lanes);
     }

@@ -19,10 +19,11 @@ template <class L, class Law>
 void find_parting(Work<L, Law>& w) {
     using V = typename L::V;
     const V plus = V::splat(1.0), none = V::splat(0.0);
+    const Table<L> deflection = w.touching.deflections(w.deflection, false);
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         const V side = w.side.at(0, b), rate = w.deflection.at(1, b), level = absolute(w.level.at(0, b));
         const V lower = w.lower.at(0, b), upper = w.upper.at(0, b);
-        const V spring = side * w.law.force(w.deflection, 0, b),
+        const V spring = side * w.law.force(deflection, 0, w.touching.block_of(b)),
                 damper = side * w.mesh_damping.at(0, b) * rate;
         // Overlap, and with it the spring's force, is known to the rounding of the deflection.
         const V overlap =

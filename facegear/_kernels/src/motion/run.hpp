@@ -95,7 +95,7 @@ class Runner final : public AnyRunner {
         const Asked& asked = log_->asked;
         advance(work_);
         if (asked.fine) {
-            work_.law.expand_slopes(work_.deflection, work_.order);
+            work_.law.expand_slopes(work_.touching.deflections(work_.deflection, false), work_.order);
             shorten_for_tangents(work_);
         }
         if (asked.columns > 0) {

@@ -74,18 +74,36 @@ void add_contacts(Work<L, Law>& w, Tally<L>& tally, typename L::S at, typename L
     const V ahead = L::every(at), heavy = L::every(weight);
     const Index of_law = blocks_of<L>(w.shape->contacts), pairs = w.shape->pairs;
     w.law.look_ahead(w.order, ahead);
-    for (Index b = 0; b < w.deflection.width; ++b) {
+    struct Motion {
         V deflection = V::splat(0.0), rate = deflection;
+    };
+    const auto move = [&](Index b) {
+        Motion moved;
         for (Index i = w.order; i >= 0; --i) {
-            rate = rate * ahead + deflection;
-            deflection = deflection * ahead + w.deflection.at(i, b);
+            moved.rate = moved.rate * ahead + moved.deflection;
+            moved.deflection = moved.deflection * ahead + w.deflection.at(i, b);
         }
+        return moved;
+    };
+    const auto add = [&](Index b, const Motion& moved, V elastic) {
         const V side = w.side.at(0, b);
-        const V elastic = b < of_law ? w.law.force_ahead(deflection, w.order, ahead, b) : V::splat(0.0);
-        const V push = w.acting.at(0, b) * rate + w.active.at(0, b) * elastic;
-        tally.value.put(0, b, deflection + w.edge.at(0, b));
+        const V push = w.acting.at(0, b) * moved.rate + w.active.at(0, b) * elastic;
+        tally.value.put(0, b, moved.deflection + w.edge.at(0, b));
         w.force.put(0, b, absolute(side) * elastic);
         tally.pull.put(0, b, smaller(tally.pull.at(0, b), side * push));
+    };
+    for (Index mesh = 0; mesh < w.touching.pairs(); ++mesh) {
+        const Motion drive = move(mesh), back = move(mesh + pairs);
+        const V touching = w.touching.of_flank(drive.deflection, back.deflection, mesh);
+        const V elastic = w.law.force_ahead(touching, w.order, ahead, mesh);
+        add(mesh, drive, elastic);
+        add(mesh + pairs, back,
+            w.touching.is_one(mesh) ? elastic
+                                    : w.law.force_ahead(back.deflection, w.order, ahead, mesh + pairs));
+    }
+    for (Index b = 2 * w.touching.pairs(); b < w.deflection.width; ++b) {
+        const Motion moved = move(b);
+        add(b, moved, b < of_law ? w.law.force_ahead(moved.deflection, w.order, ahead, b) : V::splat(0.0));
     }
     for (Index mesh = 0; mesh < pairs; ++mesh) {
         tally.value.set(0, mesh, between(w, tally.value.of(0, mesh), tally.value.of(0, mesh + pairs), mesh));
@@ -134,9 +152,9 @@ V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
 template <class V>
 void widen(const std::vector<V>& terms, Index order, V& minimum, V& maximum) {
     const Reach<V> reach = reach_of(terms[0], order, [&](Index i) { return terms[i]; });
-    if (positive_lanes(reach.top - maximum) != 0)
+    if (positive_lanes(reach.top(V::splat(1.0)) - maximum) != 0)
         maximum = larger(maximum, largest_over_step(terms, order, 1.0));
-    if (positive_lanes(minimum - reach.bottom) != 0)
+    if (positive_lanes(minimum - reach.bottom(V::splat(1.0))) != 0)
         minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
 }
 

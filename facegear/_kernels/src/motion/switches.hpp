@@ -14,24 +14,29 @@
 
 namespace facegear::motion {
 
-// Bounds of a polynomial over the step, with room for rounding.
+// Bounds of a polynomial over a part of the step, with room for rounding: the first term grows with the part,
+// further ones at most with its square.
 template <class V>
 struct Reach {
-    V top, bottom;
+    V start, rise, up, down, slack; // up, down: sums of the further terms above zero and below
+
+    V top(V part) const { return start + part * (larger(rise, V::splat(0.0)) + part * up) + slack; }
+    V bottom(V part) const { return start + part * (smaller(rise, V::splat(0.0)) - part * down) - slack; }
     // Above zero where a level lies within; equality counts.
-    V of(V level) const { return smaller(top - level, level - bottom); }
+    V of(V level, V part) const { return smaller(top(part) - level, level - bottom(part)); }
 };
 template <class V, class Term>
 [[gnu::always_inline]] inline Reach<V> reach_of(V start, Index order, Term term) {
+    const V rise = term(1), half = V::splat(0.5);
     V sum = V::splat(0.0), sizes = sum;
-    for (Index i = 1; i <= order; ++i) {
+    for (Index i = 2; i <= order; ++i) {
         const V own = term(i);
         sum = sum + own;
         sizes = sizes + absolute(own);
     }
     // Terms above zero add up to half of sizes + sum, those below to half of sizes - sum.
-    const V half = V::splat(0.5), slack = sizes * V::splat(1e-12);
-    return {start + half * (sizes + sum) + slack, start - half * (sizes - sum) - slack};
+    const V slack = (absolute(rise) + sizes) * V::splat(1e-12);
+    return {start, rise, half * (sizes + sum), half * (sizes - sum), slack};
 }
 
 // How often the Bernstein coefficients of the ways change their sign over the step, and the last of them: the
@@ -155,6 +160,12 @@ template <class L, class Law>
     }
 }
 
+// The part of each machine's step in which a switch may still be the first.
+template <class L, class Law>
+typename L::V searched_part(const Work<L, Law>& w) {
+    return L::every(L::S::load(w.first_switch));
+}
+
 // Gather the ways of the forces of contacts that only push to zero.
 template <class L, class Law>
 void look_at_force(Work<L, Law>& w, Index b) {
@@ -168,7 +179,7 @@ void look_at_force(Work<L, Law>& w, Index b) {
     for (Index i = 0; i < w.order; ++i) w.terms[i] = push_of(w, i, b);
     w.terms[w.order] = none;
     const auto scaled = [&](Index i) { return w.powers[i] * w.terms[i]; };
-    const V reach = reach_of(w.terms[0], w.order, scaled).of(none);
+    const V reach = reach_of(w.terms[0], w.order, scaled).of(none, searched_part(w));
     const unsigned zero = positive_lanes(zero_now), edge = positive_lanes(on_edge);
     const unsigned lanes = positive_lanes(where_positive(able, where_positive(zero_now, one, reach), none));
     const double* terms = reinterpret_cast<const double*>(w.terms.data());
@@ -199,27 +210,98 @@ template <class L, class Law>
             standing(where_positive(touching, state + side, -one))};
 }
 
+// Where deflections of a block may pass their two levels in the part of the step that is searched (above
+// zero).
+template <class V>
+struct Wanted {
+    V near, far;
+};
+template <class L, class Law>
+[[gnu::always_inline]] inline Wanted<typename L::V> wanted_of(const Work<L, Law>& w, Index b,
+                                                              const Levels<typename L::V>& levels) {
+    using V = typename L::V;
+    const V one = V::splat(1.0), none = V::splat(0.0), part = searched_part(w);
+    const V able = where_positive(w.upper.at(0, b) - w.lower.at(0, b), one, none);
+    const Reach<V> reach{w.deflection.at(0, b), w.reach.at(0, b), w.reach.at(1, b), w.reach.at(2, b),
+                         w.reach.at(3, b)};
+    const auto wanted = [&](V level, V standing) {
+        return where_positive(able, where_positive(standing, one, reach.of(level, part)), none);
+    };
+    return {wanted(levels.near, levels.on_near), wanted(levels.far, levels.on_far)};
+}
+
+// The way of each machine that seems to pass its level first, by its value and rate: number 2 block, or
+// 2 block + 1 for the far level.
+template <class V>
+struct Likely {
+    V number = V::splat(-1.0), level = V::splat(0.0), at = V::splat(infinity);
+
+    void compare(V wanted, V standing, V other_level, V start, V rise, Index other) {
+        const V none = V::splat(0.0), late = V::splat(2.0);
+        const V when = (other_level - start) / rise;
+        const V sooner = where_positive(when, smaller(when, late), late); // no number counts as late
+        V better = where_positive(wanted, at - sooner, none);
+        better = where_positive(standing, none, better);
+        number = where_positive(better, V::splat(static_cast<double>(other)), number);
+        level = where_positive(better, other_level, level);
+        at = where_positive(better, sooner, at);
+    }
+};
+
+// Bound the deflections of all blocks over the step, and find where they may pass a level at all.
+template <class L, class Law>
+Likely<typename L::V> bound_ways(Work<L, Law>& w) {
+    using V = typename L::V;
+    Likely<V> likely;
+    for (Index b = 0; b < w.deflection.width; ++b) {
+        w.may_switch[b] = positive_lanes(w.upper.at(0, b) - w.lower.at(0, b)) != 0;
+        if (!w.may_switch[b]) continue;
+        const V start = w.deflection.at(0, b);
+        const Reach<V> reach =
+            reach_of(start, w.order, [&](Index i) { return w.powers[i] * w.deflection.at(i, b); });
+        const V rows[] = {reach.rise, reach.up, reach.down, reach.slack};
+        for (Index row = 0; row < 4; ++row) w.reach.put(row, b, rows[row]);
+        const Levels<V> levels = levels_of(w, b);
+        const Wanted<V> wanted = wanted_of(w, b, levels);
+        const unsigned near = positive_lanes(wanted.near), far = positive_lanes(wanted.far);
+        w.may_switch[b] = (near | far) != 0;
+        if (L::machines == 1) continue; // which way is the first is not asked
+        if (near) likely.compare(wanted.near, levels.on_near, levels.near, start, reach.rise, 2 * b);
+        if (far) likely.compare(wanted.far, levels.on_far, levels.far, start, reach.rise, 2 * b + 1);
+    }
+    return likely;
+}
+
 // Shorten the step of each machine to the first contact switch inside it.
+//
+// Side by side, the switch that seems to be the first of each machine is found first, in lanes that are all
+// at work: hardly another deflection can pass a level before it.
 template <class L, class Law>
 void until_switch(Work<L, Law>& w) {
     using V = typename L::V;
     using S = typename L::S;
     if (!w.shape->opens) return;
-    const V one = V::splat(1.0), none = V::splat(0.0), length = L::every(w.length);
+    const V none = V::splat(0.0), length = L::every(w.length);
     std::fill(w.first_switch, w.first_switch + L::machines, 1.0);
-    w.powers[0] = one;
+    w.powers[0] = V::splat(1.0);
     for (Index i = 1; i <= w.order; ++i) w.powers[i] = length * w.powers[i - 1];
+    const Likely<V> likely = bound_ways(w);
+    for (int lane = 0; L::machines > 1 && lane < L::lanes; ++lane) {
+        const Index number = static_cast<Index>(likely.number[lane]);
+        if (number >= 0)
+            add_way(w, w.deflection.begin(number / 2), w.deflection.stride(), lane, likely.level[lane], false,
+                    false);
+    }
+    if (w.way_count > 0) finish_ways(w);
     for (Index b = 0; b < w.deflection.width; ++b) {
-        const V able = where_positive(w.upper.at(0, b) - w.lower.at(0, b), one, none);
-        if (positive_lanes(able) == 0) continue;
-        const Reach<V> reach = reach_of(w.deflection.at(0, b), w.order,
-                                        [&](Index i) { return w.powers[i] * w.deflection.at(i, b); });
-        const Levels<V> levels = levels_of(w, b);
-        const auto wanted = [&](V level, V standing) {
-            return where_positive(able, where_positive(standing, one, reach.of(level)), none);
-        };
-        look_at_level(w, b, levels.near, levels.on_near, wanted(levels.near, levels.on_near));
-        look_at_level(w, b, levels.far, levels.on_far, wanted(levels.far, levels.on_far));
+        if (w.may_switch[b]) {
+            const Levels<V> levels = levels_of(w, b);
+            const Wanted<V> wanted = wanted_of(w, b, levels);
+            const V near = likely.number - V::splat(static_cast<double>(2 * b)), far = near - V::splat(1.0);
+            look_at_level(w, b, levels.near, levels.on_near,
+                          where_positive(absolute(near), wanted.near, none));
+            look_at_level(w, b, levels.far, levels.on_far, where_positive(absolute(far), wanted.far, none));
+        }
         if (w.shape->push_only && b < blocks_of<L>(w.shape->contacts)) look_at_force(w, b);
     }
     if (w.way_count > 0) finish_ways(w);

@@ -78,7 +78,7 @@ void shorten_for_tangents(Work<L, Law>& w) {
     for (Index i = w.order - 1; i <= w.order; ++i) {
         V size = none;
         for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
-            const V own = w.leverage.at(0, b) * absolute(w.law.slope().at(i, b));
+            const V own = w.leverage.at(0, b) * absolute(w.law.slope().at(i, w.touching.block_of(b)));
             size = larger(size, where_positive(w.active.at(0, b), own, none));
         }
         S whole = Products<L>::largest(size) * S::splat(1.0 / static_cast<double>((i + 1) * (i + 2)));

@@ -52,15 +52,33 @@ void push_contacts(Work<L, Law>& w, Table<L> deflection, Index i, bool disturbed
     const bool kept = w.friction.count() > 0 || (w.shape->push_only && !disturbed);
     const Index of_law = blocks_of<L>(w.shape->contacts);
     const Series<L> slope = w.law.slope();
-    for (Index b = 0; b < deflection.width; ++b) {
+    const auto push = [&](Index b, V total) {
+        if (kept) w.elastic.put(i, b, absolute(w.side.at(0, b)) * total);
+        total = w.active.at(0, b) * total + w.acting.at(0, b) * rate * deflection.at(i + 1, b);
+        w.force.put(0, b, pushed * total);
+    };
+    Index first = 0;
+    if constexpr (Law::by_mesh) {
+        const Table<L> of_blocks = w.touching.deflections(deflection, disturbed);
+        const Index pairs = w.touching.pairs();
+        const auto force = [&](Index b) {
+            if (!w.law.touches(b)) return V::splat(0.0);
+            return disturbed ? product(slope, of_blocks, i, b) : w.law.force(of_blocks, i, b);
+        };
+        for (Index mesh = 0; mesh < pairs; ++mesh) {
+            const V total = force(mesh);
+            push(mesh, total);
+            push(mesh + pairs, w.touching.is_one(mesh) ? total : force(mesh + pairs));
+        }
+        first = 2 * pairs;
+    }
+    for (Index b = first; b < deflection.width; ++b) {
         V total = V::splat(0.0);
         const bool touching =
             b < of_law &&
             (L::machines == 1 || positive_lanes(kept ? absolute(w.side.at(0, b)) : w.active.at(0, b)));
         if (touching) total = disturbed ? product(slope, deflection, i, b) : w.law.force(deflection, i, b);
-        if (kept) w.elastic.put(i, b, absolute(w.side.at(0, b)) * total);
-        total = w.active.at(0, b) * total + w.acting.at(0, b) * rate * deflection.at(i + 1, b);
-        w.force.put(0, b, pushed * total);
+        push(b, total);
     }
 }
 
@@ -77,6 +95,7 @@ void recurrence(Work<L, Law>& w, Index first, Index last, Table<L> y, Table<L> d
         expand_rings(0);
         expand_rings(1);
         w.products.find_pressing(w.active, w.acting);
+        for (Index row = 0; row < 2; ++row) w.touching.take(deflection, row, disturbed);
     }
     for (Index i = first; i < last; ++i) {
         const double factor = 1.0 / static_cast<double>((i + 1) * (i + 2));
@@ -87,6 +106,7 @@ void recurrence(Work<L, Law>& w, Index first, Index last, Table<L> y, Table<L> d
         w.products.couple(y, i);
         w.friction.rub(w.elastic, w.side, i, factor, w.products, y, i + 2);
         w.products.deflect(y, i + 2, disturbed ? nullptr : &w.error, deflection);
+        w.touching.take(deflection, i + 2, disturbed);
         expand_rings(i + 2);
     }
 }

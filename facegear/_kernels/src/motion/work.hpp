@@ -13,6 +13,7 @@
 #include "motion/rings.hpp"
 #include "motion/roots.hpp"
 #include "motion/system.hpp"
+#include "motion/touching_flanks.hpp"
 
 namespace facegear::motion {
 
@@ -34,6 +35,7 @@ struct Work {
           products(*shape),
           rings(*shape, rows),
           friction(*shape, rows),
+          touching(L::machines > 1 && LawType::by_mesh ? shape->pairs : 0, rows),
           roots(steps_order),
           polynomial(rows),
           powers(rows),
@@ -52,6 +54,8 @@ struct Work {
         error_terms = room.table<L>(rows, std::max(m, shape->error.kinds));
         load_series = room.table<L>(2 * shape->load.terms, n);
         ways = room.table<L>(rows, 1);
+        reach = room.table<L>(4, m);
+        may_switch.resize(reach.width);
         for (Index b = 0; b < lower.width; ++b) {
             lower.put(0, b, V::splat(-infinity)); // lanes behind the last contact stay open
             upper.put(0, b, V::splat(infinity));
@@ -116,6 +120,7 @@ struct Work {
     Products<L> products;
     Rings<L> rings;
     Friction<L> friction;
+    TouchingFlanks<L> touching;
 
     S phase = S::splat(0.0), length = S::splat(0.0); // of the step in the period, rad
     S longest = S::splat(infinity);                  // that a step may be, rad
@@ -140,6 +145,8 @@ struct Work {
     Table<L> known_state, known_begin, known_end; // pieces that were found last, and where they begin and end
     Index last_force = 0; // up to which coefficient the forces are needed: the recurrence finds order - 2
 
+    Table<L> reach; // bounds of the deflections over the step, as rise, up, down and slack of Reach
+    std::vector<char> may_switch; // whether a contact of a block may pass a level in the step
     Table<L> ways; // polynomials that may have a zero in the step of their machine, one in each lane
     int way_count = 0, way_machine[L::lanes] = {};
     bool way_ignores[L::lanes] = {};  // a zero at once, which was decided by the rates already

@@ -10,11 +10,12 @@
 #include "motion/constants.hpp"
 #include "motion/fourier.hpp"
 #include "motion/layout.hpp"
+#include "motion/touching_flanks.hpp"
 
 namespace facegear::motion {
 
 struct LinearLaw {
-    static constexpr bool curved = false, ahead_by_forces = false;
+    static constexpr bool curved = false, ahead_by_forces = false, by_mesh = false;
 
     FourierRows fourier;     // k of each kind, N/m
     std::vector<Index> kind; // of each contact
@@ -71,7 +72,7 @@ class LinearLaw::Motion {
     }
 
     // What depends on the pieces that contacts are in, too: nothing.
-    void expand_pieces(Expansion<L>&, Table<L>, Index) {}
+    void expand_pieces(Expansion<L>&, const TouchingFlanks<L>&, Table<L>, Index) {}
 
     // F = k d: coefficient i of the force of a block of contacts. Two coefficients share a pass over the
     // series: an even one leaves the next one, but for the deflection's coefficient that is not known yet.

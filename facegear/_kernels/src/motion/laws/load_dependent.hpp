@@ -8,11 +8,12 @@
 #include "motion/constants.hpp"
 #include "motion/fourier.hpp"
 #include "motion/layout.hpp"
+#include "motion/touching_flanks.hpp"
 
 namespace facegear::motion {
 
 struct LoadDependentLaw {
-    static constexpr bool curved = true, ahead_by_forces = false;
+    static constexpr bool curved = true, ahead_by_forces = false, by_mesh = true;
 
     Index kinds = 0, level_count = 0, harmonics = 1; // harmonics with the mean
     std::vector<double>
@@ -67,12 +68,16 @@ class LoadDependentLaw::Motion {
 
     // The series of the four coefficients of every contact's piece, odd ones on a back flank. state: as the
     // contacts'.
-    void expand_pieces(Expansion<L>& expansion, Table<L> state, Index rows) {
+    void expand_pieces(Expansion<L>& expansion, const TouchingFlanks<L>& touching, Table<L> state,
+                       Index rows) {
         const Index terms = law_[0]->harmonics, span = 2 * expansion.terms() * L::lanes;
-        for (Index b = 0; b < zeroth_.width; ++b) {
-            touching_[b] = 0;
-            for (int lane = 0; lane < L::lanes; ++lane)
-                turn_lane(expansion, state.data[b * L::lanes + lane], b, lane);
+        std::fill(touching_.begin(), touching_.end(), 0);
+        for (Index b = 0; b < state.width && b < zeroth_.width; ++b) {
+            for (int lane = 0; lane < L::lanes; ++lane) {
+                const bool is_touching =
+                    turn_lane(expansion, state.data[b * L::lanes + lane], touching.contact_of(b, lane), lane);
+                touching_[b] = touching_[b] || is_touching;
+            }
             if (!touching_[b]) continue;
             gather(expansion.terms());
             const Table<L>* tables[] = {&zeroth_, &first_, &second_, &third_};
@@ -80,6 +85,9 @@ class LoadDependentLaw::Motion {
                 expansion.expand_parts(parts_ + power * span, terms, rows, *tables[power], b);
         }
     }
+
+    // Whether a contact of a block touches.
+    bool touches(Index block) const { return touching_[block]; }
 
     // Three products with one series side by side; the newest coefficients, which need each other, come last.
     V force(Table<L> deflection, Index i, Index block) {
@@ -140,23 +148,22 @@ class LoadDependentLaw::Motion {
     }
 
   private:
-    // What the coefficients of one lane's contact are made of; zeros where it is open.
-    void turn_lane(const Expansion<L>& expansion, double piece, Index b, int lane) {
-        const Index m = entity_of<L>(b, lane);
+    // What the coefficients of one lane's contact are made of; zeros where it is open. True if it touches.
+    bool turn_lane(const Expansion<L>& expansion, double piece, Index m, int lane) {
         const int machine = machine_of<L>(lane);
         const LoadDependentLaw& law = *law_[machine];
         Lanes<4>* even = turned_.data() + 2 * law.harmonics * lane;
         if (m >= law.contacts() || piece == 0.0) {
             std::fill(even, even + 2 * law.harmonics, Lanes<4>::splat(0.0));
-            return;
+            return false;
         }
-        touching_[b] = 1;
         const double size = factor_[machine], odd = piece > 0.0 ? size : -size;
         Lanes<4> factor = Lanes<4>::splat(size);
         factor.set(0, odd);
         factor.set(2, odd);
         const Index number = static_cast<Index>(piece < 0.0 ? -piece : piece);
         expansion.turn_four(law.cubic(m, number), law.harmonics, machine, factor, even, even + law.harmonics);
+        return true;
     }
 
     // Turn the four coefficients of each lane into lanes of each coefficient, [even, odd][term of span].

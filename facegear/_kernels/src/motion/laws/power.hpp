@@ -11,11 +11,12 @@
 #include "motion/constants.hpp"
 #include "motion/fourier.hpp"
 #include "motion/layout.hpp"
+#include "motion/touching_flanks.hpp"
 
 namespace facegear::motion {
 
 struct PowerLaw {
-    static constexpr bool curved = true, ahead_by_forces = true;
+    static constexpr bool curved = true, ahead_by_forces = true, by_mesh = false;
 
     FourierRows factor; // of all contacts: one kind
     double size = 1.0, exponent = 1.5, level = 1e-3;
@@ -64,7 +65,7 @@ class PowerLaw::Motion {
         expansion.expand(series_, law_->terms(), rows, factor_);
     }
 
-    void expand_pieces(Expansion<L>&, Table<L> state, Index) {
+    void expand_pieces(Expansion<L>&, const TouchingFlanks<L>&, Table<L> state, Index) {
         const V none = V::splat(0.0), one = V::splat(1.0);
         for (Index b = 0; b < side_.width; ++b) {
             const V piece = state.at(0, b);
