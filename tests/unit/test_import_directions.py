@@ -4,6 +4,7 @@ import ast
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
+from statistics import median
 
 import pytest
 
@@ -172,3 +173,14 @@ def test_array_types_have_their_names_from_one_module():
     named = {"np.float64", "np.int64", "np.bool_", "np.complex128", "Any"}
     for module in set(MODULES) - {PACKAGE / "arrays.py"}:
         assert not {f"NDArray[{name}]" for name in named} & parsed(module)[2], module
+
+
+MOST_MODULES, MOST_LINES, LEAST_MEDIAN = 430, 450, 110
+"""Limits of the package: modules, lines of the longest one, median of their lines (issue 52)."""
+
+
+def test_modules_are_few_and_neither_shredded_nor_overlong():
+    lines = {module: len(module.read_text().splitlines()) for module in MODULES}
+    assert len(MODULES) <= MOST_MODULES
+    assert max(lines.values()) <= MOST_LINES, max(lines, key=lambda module: lines[module])
+    assert median(lines.values()) >= LEAST_MEDIAN
