@@ -22,6 +22,16 @@ JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
 NEAR_JUNCTION = 3.0
 """Fold and branch point of a junction lie within this many steps."""
+SHORTENING_FACTOR = 0.4
+"""Factor on the length of a step that was refused: a free choice, which decides how many steps are tried."""
+NEAR_CHORD = 0.2
+"""Distance from the chord of a step, over its length, up to which the start of the branch is looked for: a
+step with a larger correction is refused (CORRECTION of segment.py), so that the branch lies no farther off.
+"""
+SAME_POINT, SAME_POINT_SLOPE = 1e-6, 1e-3
+"""Distance up to which two solved points are one, in length scales, and its growth with the distance of the
+start from the chord: the planes through both are then not quite the same.
+"""
 NON_LIMITING_KINDS = (Kind.GRAZE, Kind.NEUTRAL)
 """Special points at which a motion neither ends nor changes its stability."""
 
@@ -211,7 +221,7 @@ def _track(
             )
             division, last, junction = _between_points(period_map, current_point, next_point)
         except (NotConverged, np.linalg.LinAlgError) as error:
-            step *= 0.4
+            step *= SHORTENING_FACTOR
             if step < run.ds_min:
                 track.end, track.failed_attempts = BranchEnd.STEP, f"{error}; steps down to {run.ds_min:g}"
                 return track
@@ -296,8 +306,10 @@ def _closing_point(
     for image in images:
         fraction = (image - current_point.x) @ chord / length**2
         off = np.linalg.norm(image - current_point.x - fraction * chord)
-        if not 0.0 < fraction <= 1.0 or off > 0.2 * length:
+        if not 0.0 < fraction <= 1.0 or off > NEAR_CHORD * length:
             continue
+        # Another leg may pass beside the start. The branch is closed only if its own point in the plane
+        # through the start is the start.
         try:
             point = solve_point(
                 period_map,
@@ -310,7 +322,7 @@ def _closing_point(
             continue
         row = chord / length
         target = solve_point(period_map, image, row, current_point.tangent, current_point.linear)
-        if np.linalg.norm(point.x - target.x) < 1e-6 + 1e-3 * off:
+        if np.linalg.norm(point.x - target.x) < SAME_POINT + SAME_POINT_SLOPE * off:
             return target
     return None
 

@@ -131,6 +131,8 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     float or None
         Position as a fraction of the chord, or None.
     """
+    # An extremum may come over an edge and go back within one step, or two of them may be born beyond it:
+    # both ends then have the same contacts, and only the extrema between them tell.
     points = segment.at(low), segment.at(high)
     reach = float(np.linalg.norm(points[1].x - points[0].x))
     levels = _levels(segment.period_map, points[0].u)
@@ -146,6 +148,7 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     looks_of = [*_dips(extrema, slopes, levels, near)]
     looks_of += _ripples([point.extrema for point in points], whole, levels, counts, born)
     before, after = (_passages(point.extrema, levels) for point in points)
+    # The cubics only propose places. Passages that rise and fall on the way through them are the proof.
     for looks in dict.fromkeys(looks_of):
         fractions = [low + look * (high - low) for look in looks]
         passages = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]

@@ -31,6 +31,18 @@ ASIDE = 1e-6
 """Part of a stretch by which a graze has to lie off its ends to divide it."""
 TOUCH_DISTANCE = 1e-4
 """An extreme this near an edge, in length scales, may touch it there; grazes are located to far less."""
+LOOSE_BRACKET = 1e-9
+"""Part of a step to which the place where a body comes loose is halved: a count changes there, which gives no
+zero to be interpolated.
+"""
+FOLD_GOAL, MIN_FOLD_GOAL = 1e-3, 1e-10
+"""Accuracy of the place of a fold, as a part of the step: factor on the square root of the tolerance of the
+steps, and least value. An error of this size moves the parameter by its square.
+"""
+PLACE_GOAL, MIN_PLACE_GOAL = 0.1, 1e-13
+"""Accuracy of the place of other special points, as a part of the step: factor on the tolerance of the steps,
+and least value, some 500 rounding units of a double.
+"""
 STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 """Special points at which multipliers pass the unit circle."""
 
@@ -237,6 +249,8 @@ def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> t
         events.append(_Event(Kind.FOLD, lambda point: point.tangent[-1]))
     crossing = first.parity != second.parity
     is_ambiguous = is_ambiguous or (folds and crossing)
+    # A pair that meets on the real axis outside the circle becomes two real multipliers: the counts change,
+    # but no multiplier passes the circle.
     collided = (abs(plus_ones) == 2 or abs(minus) == 2) and 2 * pairs == -(plus_ones + minus)
     if collided:
         return events, is_ambiguous
@@ -271,7 +285,7 @@ def _turns(first: BranchPoint, second: BranchPoint) -> bool:
 def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Special]:
     """Locate where a body comes loose or is caught, by halving, and the events before and after it."""
     start, end = low, high
-    while high - low > 1e-9:
+    while high - low > LOOSE_BRACKET:
         middle = 0.5 * (low + high)
         if segment.at(middle).linear.neutral.shape == segment.at(low).linear.neutral.shape:
             low = middle
@@ -296,7 +310,10 @@ def _refine(segment: Segment, low: float, high: float, event: _Event) -> Special
     # At a fold the parameter stands still along the arc, so the position along the chord need not be as
     # sharp.
     tolerance = segment.period_map.step_tolerance
-    goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
+    if event.kind is Kind.FOLD:
+        goal = max(FOLD_GOAL * np.sqrt(tolerance), MIN_FOLD_GOAL)
+    else:
+        goal = max(PLACE_GOAL * tolerance, MIN_PLACE_GOAL)
     # Changes that lie closer together than SHORTEST are not distinguished, nor is their order known.
     fraction = zero(test, low, high, goal) if high - low > SHORTEST else high
     point = segment.at(fraction)

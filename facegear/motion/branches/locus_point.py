@@ -11,7 +11,7 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.motion.branches.family import Plane
 from facegear.motion.branches.period_map import Linear, PeriodMap
-from facegear.motion.branches.points import SINGULAR
+from facegear.motion.branches.points import GOAL_OF_TOLERANCE, MIN_GOAL, SINGULAR
 from facegear.motion.branches.special import Kind
 
 DIFFERENCE = 1e-5
@@ -227,7 +227,7 @@ def solve_on_locus(
     NotConverged
         If Newton's method fails; the message names both parameters.
     """
-    x, goal = guess.copy(), max(0.1 * problem.period_map.step_tolerance, 2e-13)
+    x, goal = guess.copy(), max(GOAL_OF_TOLERANCE * problem.period_map.step_tolerance, MIN_GOAL)
     before = np.inf
     for count in range(NEWTON_STEPS):
         linear, surface, normal = _surface(problem, x)

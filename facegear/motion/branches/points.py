@@ -20,6 +20,20 @@ GAIN = 0.5
 """A step with an old matrix must reduce the gap at least to this fraction."""
 FARTHEST = 0.5
 """Largest step in the parameter's logarithm."""
+DIVERGED = 1e6
+"""Change over the period, in length scales, beyond which Newton's method is given up."""
+LAST_STEP = 1e3
+"""Longest Newton step, in goals, that may follow a gap below the goal. A nearly singular matrix makes a long
+step of a small gap; then the orbit is not found yet.
+"""
+GAP_DOUBT = 1e-3
+"""Length of a Newton step over the square root of the goal below which the next gap is expected to meet the
+goal, as the method is quadratic. The gap itself is then computed and decides.
+"""
+GOAL_OF_TOLERANCE, MIN_GOAL = 0.1, 2e-13
+"""Goal of the change over a period: this fraction of the tolerance of the steps, but not less than
+some 1000 rounding units of a double, in length scales.
+"""
 NEWTON_STEPS = 6
 """Maximum number of Newton steps, each with a new matrix."""
 REAL_PAIR = 1e-6
@@ -196,18 +210,19 @@ def correct(
             raise NotConverged("branches", _describe_location(period_map, guess), "correction above the step")
         chord = period_map.linear(x[:-1], x[-1])
         size = float(np.abs(chord.gap).max())
-        if not np.isfinite(size) or size > 1e6:
+        if not np.isfinite(size) or size > DIVERGED:
             break
         step = _newton_step(chord, chord.gap, row, x - guess)
         if abs(step[-1]) > FARTHEST:
             break
-        if size <= goal and np.abs(step).max() <= 1e3 * goal:
+        if size <= goal and np.abs(step).max() <= LAST_STEP * goal:
             return x + step, chord
         # Where one list of steps gives way to another the map itself jumps by their errors.
         if 0.5 * before < size <= STALL_FACTOR * goal:
             return x, chord
         x, before = x + step, size
-        if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(period_map.gap(x[:-1], x[-1])).max() <= goal:
+        is_short = np.abs(step).max() <= GAP_DOUBT * np.sqrt(goal)
+        if is_short and np.abs(period_map.gap(x[:-1], x[-1])).max() <= goal:
             return x, chord
     raise NotConverged("branches", _describe_location(period_map, guess), "bordered Newton")
 
@@ -249,7 +264,7 @@ def correct_state(period_map: PeriodMap, guess: Array, row: Array, linear: Linea
 
 def _goal(period_map: PeriodMap) -> float:
     """Change over the period at which an orbit counts as found: below the errors of the steps."""
-    return max(0.1 * period_map.step_tolerance, 2e-13)
+    return max(GOAL_OF_TOLERANCE * period_map.step_tolerance, MIN_GOAL)
 
 
 def _by_chord(

@@ -194,6 +194,8 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     ends, stretch = (segment.at(low), segment.at(high)), high - low
     neutral = ends[0].linear.neutral.shape[1]
     distances = [_distance(point) for point in ends]
+    # Multipliers may leave the circle and return within one step, where the counts at both ends are equal. A
+    # cubic through the matrices and their slopes shows it without a further orbit, if it is short enough.
     start, end = (segment.matrix_slope(fraction, stretch) for fraction in (low, high))
     turn = min(_turn(point, rate, neutral) for point, rate in zip(ends, (start, end), strict=True))
     if turn > _widest_turn(max(distances)):
@@ -208,6 +210,7 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     surely, perhaps = (
         np.concatenate([outside[0], _outside(values, margin), outside[1]]) for margin in (error, -error)
     )
+    # First what is certain, whatever the error of the cubic; then what only may be.
     look = _returning(surely, perhaps)
     if look is None:
         look = _approaching(values, distances, looks, error)
@@ -242,6 +245,8 @@ def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> A
     """
     step = matrices[1] - matrices[0]
     start, end = changes
+    # At a graze the slope of the matrix is infinite on one side (a power of 3/2 in the map). A slope out of
+    # proportion is replaced by that of the parabola through the other three numbers.
     sizes = [float(np.linalg.norm(slope)) for slope in (start, end, step)]
     if sizes[0] > STEEP * max(sizes[1:]):
         start = 2.0 * step - end
