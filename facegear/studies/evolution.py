@@ -288,10 +288,10 @@ def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) ->
 def _algorithm(task: Task, effort: Effort) -> Any:
     """Return the genetic algorithm (NSGA-II) whose variables stay on their grid."""
     from pymoo.algorithms.moo.nsga2 import NSGA2  # a library of the extra `search`
-    from pymoo.core import problem as problems
-    from pymoo.core import repair
+    from pymoo.core import problem as problems  # as above
+    from pymoo.core.repair import Repair  # as above
 
-    class Snap(repair.Repair):
+    class Snap(Repair):
         def _do(self, problem: Any, X: Array, **_: Any) -> Array:
             return np.column_stack([variable.snapped(X[:, i]) for i, variable in enumerate(task.variables)])
 
@@ -307,7 +307,7 @@ def _algorithm(task: Task, effort: Effort) -> Any:
 def _tell(algorithm: Any, offspring: Any, rows: list[dict[str, Any]], task: Task) -> None:
     """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
     from pymoo.core.evaluator import Evaluator  # as above
-    from pymoo.problems.static import StaticProblem
+    from pymoo.problems.static import StaticProblem  # as above
 
     size = len(task.objectives)
     signs = np.array([task.sign(name) for name in task.goals])

@@ -184,3 +184,15 @@ def test_modules_are_few_and_neither_shredded_nor_overlong():
     assert len(MODULES) <= MOST_MODULES
     assert max(lines.values()) <= MOST_LINES, max(lines, key=lambda module: lines[module])
     assert median(lines.values()) >= LEAST_MEDIAN
+
+
+def test_imports_inside_functions_are_few_and_say_why():
+    found = {}
+    for module in MODULES:
+        lines = module.read_text().splitlines()
+        for function in ast.walk(ast.parse("\n".join(lines))):
+            if isinstance(function, ast.FunctionDef):
+                inner = (node for node in ast.walk(function) if isinstance(node, ast.Import | ast.ImportFrom))
+                found |= {(module, node.lineno): lines[node.lineno - 2 : node.lineno] for node in inner}
+    assert len(found) <= 30
+    assert [place for place, lines in found.items() if "#" not in "".join(lines)] == []
