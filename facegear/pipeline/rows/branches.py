@@ -37,7 +37,7 @@ ROWS = (
             "jumps": From("dynamics_sweep", "jumps"),
         },
         files={
-            "branches": File("branches/branches.csv", "facegear.motion.branches.columns:BRANCH_FINITE"),
+            "branches": File("branches/branches.csv", "facegear.motion.branches.tables:BRANCH_FINITE"),
             "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("image_of", "tried")),
             "unfollowed": File("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
             "multipliers": File("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
