@@ -14,7 +14,7 @@ from facegear.build.tooth_pair import ToothPair, pair, pair_design
 from facegear.contact.analysis import met_contacts
 from facegear.contact.gear_flank import from_arrays
 from facegear.errors import ConfigError, extras_named, require_choice
-from facegear.io.workbook import write
+from facegear.io.tables import write_workbook
 from facegear.machine.poses.displaced_pair import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
@@ -280,7 +280,7 @@ class DisplacedContact:
             The path. Raises MissingExtra where openpyxl is not installed.
         """
         with extras_named():
-            return write(path, {"unloaded": self.table()})
+            return write_workbook(path, {"unloaded": self.table()})
 
     def __repr__(self) -> str:
         approaches = ", ".join(f"{name} {1e6 * flank.approach:.4g} um" for name, flank in self.flanks.items())

@@ -13,7 +13,7 @@ import pandas as pd
 
 from facegear.arrays import Array, Mask
 from facegear.errors import FacegearError
-from facegear.io import journal
+from facegear.io import documents
 
 Evaluate = Callable[[tuple[float, ...]], Mapping[str, float]]
 """Function that returns the goals of a design by name, given the values of its variables.
@@ -160,10 +160,10 @@ def evolve(
     pd.DataFrame
         Every design tried, in order; columns generation, the variables, the goals and error.
     """
-    results_by_design = {tuple(row["design"]): row for row in journal.read(partial, identity)}
+    results_by_design = {tuple(row["design"]): row for row in documents.read_journal(partial, identity)}
     rows: list[tuple[Any, ...]] = []
     algorithm = _algorithm(task, effort)
-    with journal.appending(partial, identity) as append:
+    with documents.appending(partial, identity) as append:
         while algorithm.has_next():
             offspring = algorithm.ask()
             if offspring is None:

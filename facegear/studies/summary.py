@@ -11,7 +11,7 @@ import pandas as pd
 import scipy.stats
 
 from facegear.errors import FacegearError
-from facegear.io import journal
+from facegear.io import documents
 from facegear.studies.statistics import Estimate, fraction_of, percentile, sobol_indices
 
 Evaluate = Callable[[int], Mapping[str, float]]
@@ -60,9 +60,9 @@ def run_chunk(
         Columns sample, `columns` and error, rows in the order of the numbers; NaN in `columns` where a sample
         failed.
     """
-    stored_records = {record[SAMPLE]: record for record in journal.read(partial, identity)}
+    stored_records = {record[SAMPLE]: record for record in documents.read_journal(partial, identity)}
     results, errors = np.full((len(numbers), len(columns)), np.nan), []
-    with journal.appending(partial, identity) as append:
+    with documents.appending(partial, identity) as append:
         for row, number in enumerate(numbers):
             record = stored_records.pop(number, None)
             if record is None:

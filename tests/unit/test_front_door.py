@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 import facegear
 from facegear import errors
 from facegear.errors import FacegearError
-from facegear.io.workbook import LONGEST_NAME
+from facegear.io.tables import LONGEST_NAME
 from facegear.pipeline.results.base import Result
 from facegear.pipeline.table import STAGES
 from facegear.report.compare.answers import open_answer
@@ -339,10 +339,10 @@ def test_sweeps_of_two_machines_stand_in_the_same_axes(gearbox):
 
 
 def test_tables_of_an_answer_go_to_a_workbook_and_come_back(gearbox, tmp_path):
-    from facegear.io.workbook import read
+    from facegear.io.tables import read_workbook
 
     found = gearbox.modes()
-    sheets = read(found.to_excel(tmp_path / "modes.xlsx"))
+    sheets = read_workbook(found.to_excel(tmp_path / "modes.xlsx"))
     assert set(sheets) == set(found.content)
     read_back = sheets["frequencies"]["frequency_hz"]
     np.testing.assert_allclose(read_back, found.table()["frequency_hz"], rtol=1e-15)
@@ -353,10 +353,10 @@ SHEETS = "geometry", "contact", "stiffness", "modes", "response", "statics", "to
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_every_table_of_an_answer_is_a_sheet_of_its_workbook(gearbox, tmp_path, name):
-    from facegear.io.workbook import read
+    from facegear.io.tables import read_workbook
 
     found = gearbox.hunting(positions=4) if name == "hunting" else getattr(gearbox, name)()
-    sheets = read(found.to_excel(tmp_path / "own.xlsx"))
+    sheets = read_workbook(found.to_excel(tmp_path / "own.xlsx"))
     tables = {key: part for key, part in found.content.items() if hasattr(part, "columns")}
     tables = tables or {name: found.table()}
     assert sheets and set(sheets) == set(tables)

@@ -57,10 +57,10 @@ def test_misuse_ends_in_one_line_and_writes_nothing(mistake, light, tmp_path):
 
 
 def test_a_study_goes_to_a_workbook_with_its_changed_keys(light, tmp_path):
-    from facegear.io.workbook import read
+    from facegear.io.tables import read_workbook
 
     path = study(light).to_excel(tmp_path / "own.xlsx", "modes")
-    (sheet,) = read(path).values()
+    (sheet,) = read_workbook(path).values()
     assert list(sheet.columns[:2]) == ["dynamics.speed_rpm", "order"]
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import pandas as pd
 
 from facegear.errors import FacegearError, extras_named, file_path
-from facegear.io.workbook import write
+from facegear.io.tables import write_workbook
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.table import STAGES
 from facegear.report.figures.description import Figure
@@ -86,7 +86,7 @@ class Result:
             The path. Raises MissingExtra where openpyxl is not installed.
         """
         with extras_named():
-            return write(path, self._sheets())
+            return write_workbook(path, self._sheets())
 
     def _sheets(self) -> dict[str, pd.DataFrame]:
         """Return the tables of a workbook by the names of its sheets."""

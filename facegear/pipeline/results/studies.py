@@ -12,7 +12,7 @@ import pandas as pd
 
 from facegear.build.load import plain
 from facegear.errors import FacegearError, extras_named, require_choice
-from facegear.io.workbook import write
+from facegear.io.tables import write_workbook
 from facegear.pipeline.results.base import Result, fit_for_paper
 from facegear.report.figures.comparison import front_figure, hypervolume_figure
 from facegear.report.figures.description import Figure
@@ -116,7 +116,7 @@ class Study:
             Where openpyxl is not installed.
         """
         with extras_named():
-            return write(path, {answer: self.table(answer, **arguments)})
+            return write_workbook(path, {answer: self.table(answer, **arguments)})
 
     @fit_for_paper
     def plot(self, answer: str, plot: Mapping[str, Any] | None = None, **arguments: Any) -> "Figure":

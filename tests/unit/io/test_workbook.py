@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from facegear.errors import FacegearError
-from facegear.io import workbook
+from facegear.io.tables import read_workbook, write_workbook
 
 TABLES = {
     "forces": pd.DataFrame(
@@ -16,7 +16,7 @@ TABLES = {
 
 
 def test_a_workbook_gives_back_its_tables_to_the_digits_that_excel_keeps(tmp_path):
-    read = workbook.read(workbook.write(tmp_path / "own.xlsx", TABLES))
+    read = read_workbook(write_workbook(tmp_path / "own.xlsx", TABLES))
     assert list(read) == list(TABLES)
     for name, table in TABLES.items():
         pd.testing.assert_frame_equal(read[name], table, rtol=1e-15, atol=0)
@@ -32,11 +32,11 @@ def test_a_workbook_gives_back_its_tables_to_the_digits_that_excel_keeps(tmp_pat
 )
 def test_what_no_workbook_can_hold_is_refused_and_nothing_written(tmp_path, path, tables, line):
     with pytest.raises(FacegearError, match=line):
-        workbook.write(tmp_path / path, tables)
+        write_workbook(tmp_path / path, tables)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_file_that_is_no_workbook_is_named(tmp_path):
     (tmp_path / "own.xlsx").write_text("mesh,force_n\n")
     with pytest.raises(FacegearError, match="not a readable workbook"):
-        workbook.read(tmp_path / "own.xlsx")
+        read_workbook(tmp_path / "own.xlsx")

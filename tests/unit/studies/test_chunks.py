@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from facegear.errors import FacegearError
-from facegear.io import journal
+from facegear.io import documents
 from facegear.studies import summary
 from facegear.studies.summary import run_chunk
 
@@ -80,7 +80,7 @@ def test_a_disk_that_fills_up_ends_the_chunk_in_one_line_and_no_finished_sample_
 ):
     whole, path, first = run(Machine(), tmp_path / "whole"), tmp_path / "partial", Machine()
     with monkeypatch.context() as patch:
-        patch.setattr(journal, "open", lambda at, *_, **__: FullAfter(at, room), raising=False)
+        patch.setattr(documents, "open", lambda at, *_, **__: FullAfter(at, room), raising=False)
         with pytest.raises(FacegearError, match="partial: no space left on the disk") as caught:
             run(first, path)
     assert "\n" not in str(caught.value)
