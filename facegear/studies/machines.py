@@ -41,8 +41,14 @@ from facegear.sharing.quantities import (
 )
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth, friction_quantities
 from facegear.studies.summary import identity
-from facegear.studies.tooth_contact import Flanks, Meshes, PairExcitation, Values, meshes_in_contact
-from facegear.studies.varied_bodies import VariedBodies
+from facegear.studies.tooth_contact import (
+    GearFlanks,
+    Meshes,
+    PairExcitation,
+    Values,
+    VariedBodies,
+    meshes_in_contact,
+)
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """Function that returns the quantities of a machine by column, given values of
@@ -98,7 +104,7 @@ class VariedMachine:
     options: Values
     tolerances: Values | None
     pair: Values | None = None
-    flanks: Flanks = field(default_factory=dict)
+    flanks: GearFlanks = field(default_factory=dict)
     law: Arrays | None = None
     solid: Values | None = None
     bodies: Arrays | None = None
@@ -211,7 +217,7 @@ class VariedMachine:
 def tooth_meshes(
     harmonics: pd.DataFrame,
     pair: Values | None,
-    flanks: Flanks,
+    flanks: GearFlanks,
     law: Arrays | None = None,
     rub: "ReduceTeeth | None" = None,
     lubricated_teeth: "LubricatedTeeth | None" = None,
@@ -226,7 +232,7 @@ def tooth_meshes(
         Table `harmonics` of stage stiffness.
     pair : Values or None
         Sections tooth_pair, mesh, contact and mesh_stiffness, where each pair is put into contact; else None.
-    flanks : Flanks
+    flanks : GearFlanks
         Compliance of the bodies of `pair` by name.
     law : mapping of arrays or None
         Arrays `law` of stage mesh_law; None where k does not depend on the load.
@@ -249,7 +255,7 @@ def tooth_meshes(
     )
 
 
-def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
+def stored_flanks(arrays: Sequence[Arrays]) -> GearFlanks:
     """Return the compliance of both bodies from stored arrays.
 
     Parameters
@@ -259,7 +265,7 @@ def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
 
     Returns
     -------
-    Flanks
+    GearFlanks
         Compliance by body.
     """
     if not arrays:

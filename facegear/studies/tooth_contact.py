@@ -1,12 +1,17 @@
-"""Tooth pairs put into contact again and again, and what they mean for the machine."""
+"""Tooth pairs put into contact again and again, face gears that bend, and what they mean for the machine.
+
+The body of a face gear is solved again only where its section differs.
+"""
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
-from typing import Any
+from typing import Any, Self
 
+from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
+from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
 from facegear.build.machine import TablesOf
 from facegear.build.machine_layout import ToothNumbers
 from facegear.build.plans import contact_plan, stiffness_request
@@ -18,20 +23,27 @@ from facegear.contact.resolution import check_resolution
 from facegear.contact.summary import contact_summary
 from facegear.errors import FacegearError
 from facegear.harmonics import Harmonics
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.machine import Machine
 from facegear.meshing.stiffness_curve import LoadTable, unloaded_samples
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.meshing.stiffness_source import curve_from_contact
+from facegear.parts.gear_body import reduced_body, solve_body
+from facegear.parts.reduced_body import ReducedBody
 from facegear.quantities import BODIES, ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
 from facegear.schema.base import parse
 from facegear.schema.changes import GAPS, MODULI, without
 from facegear.schema.contact import Contact, Mesh
+from facegear.schema.gear_body import BodySection
 from facegear.schema.stiffness import MeshStiffness
+from facegear.schema.transmission import Transmission
 from facegear.strength.contact_pressure import PairAnswers, contact_pressure
 from facegear.strength.passage import PassingTension
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
+from facegear.teeth.design import Flanks, GearModifications, PairDesign
 
 Values = Mapping[str, Any]
-Flanks = Mapping[str, "GearFlank"]
+GearFlanks = Mapping[str, "GearFlank"]
 """Compliance of both bodies by name."""
 
 
@@ -114,14 +126,14 @@ KEPT_BODIES = 4
 """Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
 
 
-def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = None) -> Meshes:
+def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None" = None) -> Meshes:
     """Return a function that solves the contact of tooth pairs, and remembers the last ones.
 
     Parameters
     ----------
     pair : Values
         Sections tooth_pair, mesh, contact and mesh_stiffness of the config.
-    flanks : Flanks
+    flanks : GearFlanks
         Compliance of both bodies of this pair by name.
     rub : ReduceTeeth or None
         Function that reduces the contact of a lubricated pair; None without lubrication.
@@ -201,7 +213,7 @@ def _answers(
 
 
 def _bodies(
-    pair: Values, flanks: Flanks
+    pair: Values, flanks: GearFlanks
 ) -> Callable[[Values, ToothPair], tuple[tuple[GearFlank, GearFlank], Tensions]]:
     """Compliance of both bodies of a pair, and the root stress of those with gauges.
 
@@ -237,7 +249,7 @@ def _bodies(
     return bodies
 
 
-def _tensions(flanks: Flanks) -> Tensions:
+def _tensions(flanks: GearFlanks) -> Tensions:
     """Return the passing root stress of each body with gauges; it is the same for every Young's modulus."""
     return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
 
@@ -249,3 +261,107 @@ def _nodes(tooth_pair: Values) -> str:
     for key in (*GAPS, *MODULI):
         tooth_pair = without(tooth_pair, key)
     return json.dumps(tooth_pair, sort_keys=True)
+
+
+CACHED_BODIES = 64
+"""Number of bodies that are remembered."""
+
+
+@dataclass(frozen=True, eq=False)
+class VariedBodies:
+    """Bodies of face gears for machines that differ.
+
+    `pair` is the tooth pair of the config. `cache` holds solved bodies by everything that they depend on.
+    """
+
+    pair: ToothPair
+    cache: dict[Hashable, ReducedBody] = field(default_factory=dict)
+
+    @classmethod
+    def of_stage(cls, transmission: Values, pair: Values, arrays: Arrays) -> Self:
+        """Build the cache with the bodies of the config itself.
+
+        Parameters
+        ----------
+        transmission : Values
+            Plain values of section `transmission`.
+        pair : Values
+            Plain values of section `tooth_pair`.
+        arrays : mapping of arrays
+            Arrays `reduced` of stage gear_bodies, in SI units.
+
+        Returns
+        -------
+        Self
+            The bodies.
+        """
+        bodies = cls(ToothPair.of_config(pair))
+        for side, section in elastic_gears(Transmission.of_config(transmission)).items():
+            bodies.cache[_body_key(section, bodies.pair)] = ReducedBody.of_arrays(arrays, side)
+        return bodies
+
+    def add_bodies(self, machine: Machine, section: Transmission, values: Values) -> Machine:
+        """Put a machine on its bodies; a body is solved where it is not in the cache.
+
+        Parameters
+        ----------
+        machine : Machine
+            The machine with rigid gears.
+        section : Transmission
+            Section `transmission` of the machine.
+        values : Values
+            Plain values of section `tooth_pair`, as far as they are known.
+
+        Returns
+        -------
+        Machine
+            The machine with elastic gears.
+
+        Raises
+        ------
+        ConfigError
+            For a body that cannot exist.
+        NotConverged
+            If a body is not solved.
+        """
+        pair = ToothPair.of_config(values) if values.get("face_gear") is not None else self.pair
+        check_bodies(pair, section)
+        sections = elastic_gears(section)
+        gears = {
+            number: self._body(sections[gear.side.value], pair)
+            for number, gear in enumerate(machine.layout.gears)
+            if gear.side.value in sections
+        }
+        elastic = ElasticGears(machine.layout, gears)
+        return replace(machine, bodies=elastic, softening=elastic.softening())
+
+    def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
+        """Return a reduced face gear from the cache, or compute it; the oldest one goes."""
+        key = _body_key(section, pair)
+        if key not in self.cache:
+            if len(self.cache) >= CACHED_BODIES:
+                del self.cache[next(iter(self.cache))]
+            self.cache[key] = _solve_body(section, pair)
+        return self.cache[key]
+
+
+def _body_key(section: BodySection, pair: ToothPair) -> Hashable:
+    """Return a hashable key of everything on which a reduced face gear depends."""
+    shape = body_shape(section, pair)
+    mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
+    fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
+    return (section, shape.corners.tobytes(), mounting, fitted_teeth)
+
+
+def _nominal_teeth(design: PairDesign) -> Hashable:
+    """Return a hashable key of everything on which the nominal teeth of a face gear depend."""
+    gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
+    pinion = design.pinion.teeth, design.pinion.profile_shift
+    return (design.module, design.pressure_angle, pinion, gear, design.shaper)
+
+
+def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
+    """Compute the reduced model of a face gear that bends."""
+    shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
+    solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
+    return reduced_body(solution, contact_patch(section, pair), *section.damping)

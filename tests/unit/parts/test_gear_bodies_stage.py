@@ -19,7 +19,7 @@ from facegear.pipeline.results.gear_bodies import GearBodiesResult
 from facegear.pipeline.stages import gear_bodies as stage
 from facegear.schema.base import parse
 from facegear.schema.gear_body import BodySection
-from facegear.studies import varied_bodies
+from facegear.studies import tooth_contact
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
@@ -138,15 +138,15 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
 
     monkeypatch.setattr("facegear.parts.tooth_layer.fitted_teeth", fit)
     monkeypatch.setattr(stage, "solve_body", solve)
-    monkeypatch.setattr(varied_bodies, "solve_body", solve)
-    monkeypatch.setattr(varied_bodies, "reduced_body", lambda *given: None)
+    monkeypatch.setattr(tooth_contact, "solve_body", solve)
+    monkeypatch.setattr(tooth_contact, "reduced_body", lambda *given: None)
     common = parse(BodySection, DISC)
     fitted = common.model_copy(update={"teeth": "fitted"})
     bodies = {"lower": common, "upper": fitted}
     said = stage._fitted_layers(bodies, stage._solve_bodies(bodies, FLEXIBLE.tooth_pair))
     assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
     for section in bodies.values():
-        varied_bodies._solve_body(section, FLEXIBLE.tooth_pair)
+        tooth_contact._solve_body(section, FLEXIBLE.tooth_pair)
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 

@@ -22,10 +22,9 @@ from facegear.pipeline.results.chain import Chain
 from facegear.schema.base import parse
 from facegear.schema.transmission import Transmission
 from facegear.sharing.quantities import quasi_static_quantities
-from facegear.studies import varied_bodies
+from facegear.studies import tooth_contact
 from facegear.studies.machines import Question, judge
-from facegear.studies.tooth_contact import PairExcitation
-from facegear.studies.varied_bodies import VariedBodies
+from facegear.studies.tooth_contact import PairExcitation, VariedBodies
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 K = Harmonics(np.zeros(1), np.array([4.1e8]))
@@ -59,7 +58,7 @@ def solved(monkeypatch):
         webs.append(section.web.rim_thickness_mm)
         return stiff(2e4 * section.web.rim_thickness_mm / 12.0)
 
-    monkeypatch.setattr(varied_bodies, "_solve_body", solve)
+    monkeypatch.setattr(tooth_contact, "_solve_body", solve)
     return webs
 
 
@@ -117,7 +116,7 @@ def test_fitted_body_is_another_where_the_teeth_are_cut_otherwise_and_not_where_
     relieved = {**pair, "face_gear": {**pair["face_gear"], "modifications": relief}}
     own, other, same = (parse(ToothPair, given) for given in (pair, changed, relieved))
     fitted = FLEXIBLE.transmission.face_gear.body.model_copy(update={"teeth": "fitted"})
-    key_of = varied_bodies._key
+    key_of = tooth_contact._body_key
     assert key_of(fitted, own) == key_of(fitted, same) != key_of(fitted, other)
 
 
