@@ -86,8 +86,8 @@ def _pushes(
     for variable, derivative in motion.equations:
         growth = growth + heyoka.diff(push, variable) * derivative
     growth = heyoka.subs(growth, {phase: heyoka.time})
-    pushing = drive * has_begun(motion.pushes[m], growth)
-    return pushing if back is None else pushing + back * has_begun(-motion.pushes[m], -growth)
+    on_drive = drive * has_begun(motion.pushes[m], growth)
+    return on_drive if back is None else on_drive + back * has_begun(-motion.pushes[m], -growth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,8 +113,8 @@ class Switch:
         time, state, parameters = integrator.time, integrator.state, integrator.pars
         if lane is not None:
             time, state, parameters = float(time[lane]), state[:, lane].copy(), parameters[:, lane]
-        known = parameters[: self.states.nparams].copy()
-        states = self.states(state[: self.variables], pars=known, time=time)
+        earlier_parameters = parameters[: self.states.nparams].copy()
+        states = self.states(state[: self.variables], pars=earlier_parameters, time=time)
         if self.table is not None:
             contacts, pieces, _ = self.table.shape
             rows = self.table[np.arange(contacts), states[:contacts].astype(int) + pieces // 2]
