@@ -185,47 +185,47 @@ def expressions(heyoka: Any, problem: Problem, units: ScaledSystem) -> Expressio
     rims, rim_rates = [], []
     for r, clearance in enumerate(units.clearance):
         rows = units.jacobian[units.contacts + 2 * r : units.contacts + 2 * r + 2]
-        place, rate = (
+        position, rate = (
             [_weighted_sum(heyoka, row, q, heyoka.expression(0.0)) for row in rows] for q in (u, v)
         )
-        pressed = heyoka.par[first_ring + r]
+        is_pressed = heyoka.par[first_ring + r]
         stiffness = float(system.ring_stiffness[r]) / w**2
-        forces += _ring(heyoka, place, rate, float(clearance), stiffness, system.ring_lag * w, pressed)
-        rims.append((place[0] ** 2.0 + place[1] ** 2.0 - clearance**2) / (2.0 * float(clearance)))
-        rim_rates.append((place[0] * rate[0] + place[1] * rate[1]) / float(clearance))
+        forces += _ring(heyoka, position, rate, float(clearance), stiffness, system.ring_lag * w, is_pressed)
+        rims.append((position[0] ** 2.0 + position[1] ** 2.0 - clearance**2) / (2.0 * float(clearance)))
+        rim_rates.append((position[0] * rate[0] + position[1] * rate[1]) / float(clearance))
     friction = []
     if system.rubbing is not None:
         ratios = zip(system.rubbing.flank, system.rubbing.ratios, strict=True)
         friction = [series(heyoka, ratio) * elastic[flank] for flank, ratio in ratios]
     equations = list(zip(u, v, strict=True))
     for k in range(n):
-        own = series(heyoka, system.load[k] / (w**2 * units.unit[k]))
-        own = own - system.damping[k] / w * v[k] - system.omega_squared[k] / w**2 * u[k]
-        own = _weighted_sum(heyoka, units.rubbing[:, k], friction, own)
-        equations.append((v[k], _weighted_sum(heyoka, -units.spread[:, k], forces, own)))
+        acceleration = series(heyoka, system.load[k] / (w**2 * units.unit[k]))
+        acceleration = acceleration - system.damping[k] / w * v[k] - system.omega_squared[k] / w**2 * u[k]
+        acceleration = _weighted_sum(heyoka, units.rubbing[:, k], friction, acceleration)
+        equations.append((v[k], _weighted_sum(heyoka, -units.spread[:, k], forces, acceleration)))
     parameters = first_ring + len(units.clearance)
     return Expressions(equations, deflections, rates, pushes, rims, rim_rates, law, parameters)
 
 
 def _ring(
     heyoka: Any,
-    place: list[Any],
+    position: list[Any],
     rate: list[Any],
     clearance: float,
     stiffness: float,
     lag: float,
-    pressed: Any,
+    is_pressed: Any,
 ) -> list[Any]:
     """Forces along x and y of a bearing with clearance c: F = k (1 - c / r) (x, y) and lag times dF/ds.
 
     Where it is not pressed the square of c is added to that of r, which keeps the expression regular.
     """
-    inverse = (place[0] ** 2.0 + place[1] ** 2.0 + (1.0 - pressed) * clearance**2) ** -0.5
-    growth = (place[0] * rate[0] + place[1] * rate[1]) * inverse * inverse
+    inverse = (position[0] ** 2.0 + position[1] ** 2.0 + (1.0 - is_pressed) * clearance**2) ** -0.5
+    growth = (position[0] * rate[0] + position[1] * rate[1]) * inverse * inverse
     spring = 1.0 - clearance * inverse
     return [
-        stiffness * pressed * (spring * (q + lag * q_rate) + lag * clearance * inverse * growth * q)
-        for q, q_rate in zip(place, rate, strict=True)
+        stiffness * is_pressed * (spring * (q + lag * q_rate) + lag * clearance * inverse * growth * q)
+        for q, q_rate in zip(position, rate, strict=True)
     ]
 
 

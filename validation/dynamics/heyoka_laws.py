@@ -11,7 +11,7 @@ from facegear.meshing.load_dependent import LoadDependentLaw
 from facegear.meshing.power import PowerLaw
 from facegear.motion.integrator.system import System
 
-TOUCHING, EDGE_OR_OFFSET = 0, 1
+CONTACT_PARAMETER, EDGE_PARAMETER = 0, 1
 """First parameters of a contact: 1 in contact, and the deflection from which its amount counts."""
 
 
@@ -122,7 +122,7 @@ class ForceExpression(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class LinearForce:
+class _LinearForce:
     """k(phase) times the amount. Parameters: 1 in contact, and then the edge."""
 
     heyoka: Any
@@ -142,13 +142,16 @@ class LinearForce:
         amount = deflection - float(self.upper[contact])
         if self.lower[contact] < self.upper[contact]:
             first = self.parameters * contact
-            amount = self.heyoka.par[first + TOUCHING] * deflection - self.heyoka.par[first + EDGE_OR_OFFSET]
+            amount = (
+                self.heyoka.par[first + CONTACT_PARAMETER] * deflection
+                - self.heyoka.par[first + EDGE_PARAMETER]
+            )
         return series(self.heyoka, self.stiffness[contact]) * amount
 
     def is_touching(self, contact: int) -> Any:
         """Return the first parameter."""
         if self.lower[contact] < self.upper[contact]:
-            return self.heyoka.par[self.parameters * contact + TOUCHING]
+            return self.heyoka.par[self.parameters * contact + CONTACT_PARAMETER]
         return self.heyoka.expression(1.0)
 
     def state(self, contact: int, drive: list[Any], back: list[Any]) -> list[Any]:
@@ -160,7 +163,7 @@ class LinearForce:
 
 
 @dataclass(frozen=True, eq=False)
-class CubicForce:
+class _CubicForce:
     """Cubic pieces of the amount with coefficients that are series of the phase.
 
     Parameters: 1 in contact, the deflection at which the piece begins, and all numbers of its series.
@@ -180,7 +183,7 @@ class CubicForce:
     def force(self, contact: int, deflection: Any) -> Any:
         """Return the cubic of the piece that the contact is in."""
         first = self.parameters * contact
-        beyond = deflection - self.heyoka.par[first + EDGE_OR_OFFSET]
+        beyond = deflection - self.heyoka.par[first + EDGE_PARAMETER]
         cubic = [self._coefficient(first + 2, power) for power in range(4)]
         return ((cubic[3] * beyond + cubic[2]) * beyond + cubic[1]) * beyond + cubic[0]
 
@@ -196,7 +199,7 @@ class CubicForce:
 
     def is_touching(self, contact: int) -> Any:
         """Return the first parameter."""
-        return self.heyoka.par[self.parameters * contact + TOUCHING]
+        return self.heyoka.par[self.parameters * contact + CONTACT_PARAMETER]
 
     def state(self, contact: int, drive: list[Any], back: list[Any]) -> list[Any]:
         """Return the number of the piece: 0 open, p on the drive flank, -p on the back flank."""
@@ -213,14 +216,14 @@ class CubicForce:
             begin = self.levels[:, piece]
             for sign, edge in ((1, self.upper + begin), (-1, self.lower - begin)):
                 rows = table[:, count + sign * (piece + 1)]
-                rows[:, TOUCHING], rows[:, EDGE_OR_OFFSET] = 1.0, edge
+                rows[:, CONTACT_PARAMETER], rows[:, EDGE_PARAMETER] = 1.0, edge
                 odd = float(sign) ** np.arange(1, 5)  # the law is odd: its even powers turn on a back flank
                 rows[:, 2:] = (self.pieces[:, piece] * odd[:, None, None]).reshape(contacts, -1)
         return table
 
 
 @dataclass(frozen=True, eq=False)
-class PowerForce:
+class _PowerForce:
     """A factor of the phase times x^n, a cubic below the level (`facegear.meshing.power`).
 
     Parameters: side (1 drive, -1 back, 0 open) and offset of the amount, x = side deflection - offset; 1 in
@@ -256,12 +259,12 @@ class PowerForce:
 
     def state(self, contact: int, drive: list[Any], back: list[Any]) -> list[Any]:
         """Return the four parameters."""
-        hy, none = self.heyoka, self.heyoka.expression(0.0)
-        touching, past = back or (none, none)
+        hy, zero = self.heyoka, self.heyoka.expression(0.0)
+        on_back, past = back or (zero, zero)
         edges = drive[0] * float(self.upper[contact])
         if back:
-            edges = edges - touching * float(self.lower[contact])
-        return [drive[0] - touching, edges, hy.sum([drive[0], -drive[1], touching, -past]), drive[1] + past]
+            edges = edges - on_back * float(self.lower[contact])
+        return [drive[0] - on_back, edges, hy.sum([drive[0], -drive[1], on_back, -past]), drive[1] + past]
 
 
 def force_of(heyoka: Any, system: System, frequency: float, lower: Array, upper: Array) -> ForceExpression:
@@ -276,12 +279,12 @@ def force_of(heyoka: Any, system: System, frequency: float, lower: Array, upper:
     frequency : float
         Mesh frequency, rad/s.
     lower, upper : (contacts,) array
-        Edges, over the length scale.
+        Edges over the length scale, relative.
 
     Returns
     -------
     ForceExpression
-        Forces over the length scale and the square of the frequency.
+        Forces over the length scale and the square of the frequency, kg.
 
     Raises
     ------
@@ -290,15 +293,15 @@ def force_of(heyoka: Any, system: System, frequency: float, lower: Array, upper:
     """
     law, scale = system.law, system.scale
     if isinstance(law, LinearLaw):
-        return LinearForce(heyoka, law.fourier[law.kind] / frequency**2, lower, upper)
+        return _LinearForce(heyoka, law.fourier[law.kind] / frequency**2, lower, upper)
     if isinstance(law, LoadDependentLaw):
         powers = scale ** np.arange(-1.0, 3.0)[:, None, None] / frequency**2
         coefficients = np.array([table.coefficients for table in law.tables])[law.kind]
-        return CubicForce(heyoka, law.levels.T / scale, coefficients * powers, lower, upper)
+        return _CubicForce(heyoka, law.levels.T / scale, coefficients * powers, lower, upper)
     if not isinstance(law, PowerLaw) or not (lower < upper).all():
         raise ValueError("not set up here: another law, or a power law without clearance")
     size = law.size * scale ** (law.exponent - 1.0) / frequency**2
     n, level = law.exponent, law.level / scale
     cubic = (3.0 - n) * level ** (n - 2.0), (n - 2.0) * level ** (n - 3.0)
     factor = size * np.array([[0.0, 0.0], [1.0, law.depth]])
-    return PowerForce(heyoka, factor, cubic, n, law.levels.T / scale, lower, upper)
+    return _PowerForce(heyoka, factor, cubic, n, law.levels.T / scale, lower, upper)

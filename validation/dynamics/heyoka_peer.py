@@ -18,11 +18,10 @@ from facegear.motion.integrator.kernel_system import TAU
 from validation.dynamics.heyoka_equations import Expressions, ScaledSystem, expressions, scale_system
 from validation.dynamics.problems import SAMPLES, Problem
 
-EDGE = 1e-13
-"""A deflection this close to an edge, in length scales, stands on it, and its rate decides."""
-NO_PUSH = 1e-12
-"""Spring and damper whose sum is below this part of the damper's force at a unit rate are at zero, and the
-rate of the sum decides: rounding of the deflection is EDGE, and springs are stiffer than dampers.
+EDGE, EDGE_TOLERANCE = 1e-13, 10.0
+"""A deflection this close to an edge, in length scales or in tolerances, stands on it, and its rate decides:
+an event lies on the Taylor polynomial of a deflection, in which the series of the error are cut, too. The
+same holds for spring and damper together, whose stiffness over the square of the frequency is near one.
 """
 MAX_STEPS = 1_000_000
 """Largest number of steps of a run."""
@@ -30,7 +29,7 @@ APART = 1e-3
 """Relative distance of the starts of a batch, so that its lanes do not step alike."""
 
 
-def contact_states(heyoka: Any, units: ScaledSystem, motion: Expressions) -> Callable[..., Array]:
+def contact_states(heyoka: Any, units: ScaledSystem, motion: Expressions, tolerance: float) -> Any:
     """Compile the state of all contacts and rings. On an edge or level the rate decides.
 
     Parameters
@@ -41,15 +40,19 @@ def contact_states(heyoka: Any, units: ScaledSystem, motion: Expressions) -> Cal
         The system.
     motion : Expressions
         Its equations.
+    tolerance : float
+        Absolute tolerance of the integrator, relative to the length scale.
 
     Returns
     -------
-    callable
+    heyoka.cfunc
         From scaled coordinates and rates (2 n,), parameters, and the phase in rad to the states of the law
         and the flags.
     """
 
-    def has_begun(over: Any, rate: Any, margin: float = EDGE) -> Any:
+    margin = max(EDGE, EDGE_TOLERANCE * tolerance)
+
+    def has_begun(over: Any, rate: Any) -> Any:
         on_it = heyoka.select(heyoka.gt(rate, 0.0), heyoka.gte(over, -margin), heyoka.gt(over, margin))
         return on_it + 0.0
 
@@ -83,8 +86,8 @@ def _pushes(
     for variable, derivative in motion.equations:
         growth = growth + heyoka.diff(push, variable) * derivative
     growth = heyoka.subs(growth, {phase: heyoka.time})
-    pushing = drive * has_begun(motion.pushes[m], growth, NO_PUSH)
-    return pushing if back is None else pushing + back * has_begun(-motion.pushes[m], -growth, NO_PUSH)
+    on_drive = drive * has_begun(motion.pushes[m], growth)
+    return on_drive if back is None else on_drive + back * has_begun(-motion.pushes[m], -growth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +113,8 @@ class Switch:
         time, state, parameters = integrator.time, integrator.state, integrator.pars
         if lane is not None:
             time, state, parameters = float(time[lane]), state[:, lane].copy(), parameters[:, lane]
-        known = parameters[: self.states.nparams].copy()
-        states = self.states(state[: self.variables], pars=known, time=time)
+        earlier_parameters = parameters[: self.states.nparams].copy()
+        states = self.states(state[: self.variables], pars=earlier_parameters, time=time)
         if self.table is not None:
             contacts, pieces, _ = self.table.shape
             rows = self.table[np.arange(contacts), states[:contacts].astype(int) + pieces // 2]
@@ -194,7 +197,7 @@ def compile_integrator(
     switches = _switches(heyoka, units, motion)
     switch = None
     if motion.parameters and (switches or motion.law.table is not None):
-        states = contact_states(heyoka, units, motion)
+        states = contact_states(heyoka, units, motion, tolerance)
         switch = Switch(states, motion.law.table, len(motion.equations))
     event = heyoka.t_event_batch if lanes else heyoka.t_event
     events = [event(expression, callback=switch) for expression in switches]

@@ -152,6 +152,15 @@ def test_heyoka_follows_the_same_motion_on_other_laws(name):
     assert_switches(problem)
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_heyoka_meets_every_switch_at_loose_tolerances(tolerance):
+    heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    (found,) = law_problems({"flanks with errors": make_machine(LAYOUT, 700.0, 0.0, error=20e-6)}, 7500.0)
+    problem = replace(found, periods=8)
+    error, _ = error_of(problem, trajectory(heyoka)(problem, tolerance)(), run_reference(problem))
+    assert error < 10.0 * tolerance
+
+
 def run_reference(problem):
     """Return deflections of our own integrator."""
     return compared_values(problem, run_ours(problem, 1e-13))
