@@ -41,8 +41,7 @@ from facegear.schema.base import Section, require_all
 from facegear.schema.changes import moves_pair
 from facegear.schema.contact import Contact, Mesh, Modal
 from facegear.schema.lubrication import LubricationSection
-from facegear.schema.motion import Branches, Dynamics
-from facegear.schema.sharing import LoadSharing, SharingMap
+from facegear.schema.motion import Branches, Dynamics, LoadSharing, SharingMap
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.strength import Strength
 from facegear.schema.studies import NAME, Search, Study

@@ -6,11 +6,18 @@ from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Se
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.motion.plan import BranchPlan, JumpRange, Settings, SweepPlan
 from facegear.schema.contact import Contact, Mesh, SizesSection
-from facegear.schema.motion import CARRIED_STATE_OFFSET, SECOND_LOOKS, Accuracy, Branches, Sweep
-from facegear.schema.sharing import LoadSharing, SharingMap
+from facegear.schema.motion import (
+    CARRIED_STATE_OFFSET,
+    SECOND_LOOKS,
+    Accuracy,
+    Branches,
+    LoadSharing,
+    SharingMap,
+    Sweep,
+)
 from facegear.schema.stiffness import MeshStiffness, given_series
 from facegear.schema.studies import Jumps
-from facegear.sharing.options import MapOptions, SharingOptions, SpeedRange
+from facegear.sharing.groups import MapOptions, SharingOptions, SpeedRange
 from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 
 

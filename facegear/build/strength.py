@@ -7,8 +7,15 @@ from facegear.schema.base import parse
 from facegear.schema.cards import Card, Limits
 from facegear.schema.strength import Strength
 from facegear.schema.yaml_file import read_yaml
-from facegear.strength.duty import DutyBin, given_duty, machine_duty
-from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
+from facegear.strength.materials import (
+    BendingLimits,
+    DutyBin,
+    Life,
+    MaterialCard,
+    PittingLimits,
+    given_duty,
+    machine_duty,
+)
 from facegear.strength.safety import RatedBody, RatingRequest
 from facegear.teeth.design import PairDesign
 

@@ -17,13 +17,13 @@ from facegear.contact.basis_functions import (
     Cover,
     FacingPairs,
     FacingPoints,
+    Lattice,
     Rows,
     chosen_rows,
     functions_within,
 )
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import OF_AN_EDGE, PinionPoints, PinionSurface
-from facegear.contact.lattice import Lattice
 
 
 @dataclass(frozen=True, eq=False)

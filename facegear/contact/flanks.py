@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from skfem import Basis
 
 from facegear.arrays import Array, Integers
+from facegear.contact.basis_functions import Lattice
 from facegear.contact.bodies.surface import (
     cell_areas,
     cell_points,
@@ -17,7 +18,6 @@ from facegear.contact.bodies.surface import (
     interpolation,
     pressure_basis,
 )
-from facegear.contact.lattice import Lattice
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.teeth import face_gear_fillet

@@ -15,9 +15,8 @@ import numpy as np
 
 from facegear._kernels import contact as kernels
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.basis_functions import Cover, FacingPairs
+from facegear.contact.basis_functions import Cover, FacingPairs, Lattice
 from facegear.contact.bodies.compliance import FlankCompliance
-from facegear.contact.lattice import Lattice
 from facegear.errors import NotConverged
 
 GAP, WIDTH = 0.8, 0.23

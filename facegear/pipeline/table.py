@@ -6,18 +6,15 @@ reading this table loads nothing that computes.
 
 from pathlib import PurePosixPath
 
-from facegear.pipeline.rows import branches, dynamics, friction, machine, sharing, strength, teeth, variants
+from facegear.pipeline.rows import dynamics, machine, sharing, strength, teeth, variants
 from facegear.pipeline.stage import ComputedValue, Need, Stage
 
 ROWS = (
     *teeth.ROWS,
-    *friction.PAIR_ROWS,
     *machine.ROWS,
     *dynamics.ROWS,
-    *branches.ROWS,
     *sharing.ROWS,
     *strength.LOAD_ROWS,
-    *friction.ROWS,
     *strength.ROWS,
     *variants.ROWS,
 )

@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.number_format import count_noun
-from facegear.report.case_texts import (
+from facegear.report.chapter_tables import (
     BEARINGS,
     BY_TORQUE,
     BY_TORQUE_SHOWN,
@@ -22,8 +22,6 @@ from facegear.report.case_texts import (
     ROOT_STRESS,
     SHAFT_TABLES,
     STUDY_COLUMNS,
-)
-from facegear.report.chapter_tables import (
     bearing_reactions,
     errors_chapter,
     friction_tables,

@@ -10,8 +10,7 @@ from facegear.machine.layout import Layout, Role, Side
 from facegear.machine.machine import Machine
 from facegear.motion.plan import Motion
 from facegear.motion.track import DenseMotion
-from facegear.sharing.groups import LoadGroup
-from facegear.sharing.options import SharingOptions
+from facegear.sharing.groups import LoadGroup, SharingOptions
 from facegear.sharing.statistics import Average, average, defined_mean, held_over_starts
 
 

@@ -12,9 +12,8 @@ from facegear.machine.flank_errors import constant_errors
 from facegear.machine.layout import Role
 from facegear.machine.machine import Machine
 from facegear.sharing.closed_form import SplitMachine, k_gamma_samples
-from facegear.sharing.groups import GroupKind, LoadGroup
+from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions
 from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.sharing.options import MapOptions
 from facegear.sharing.path_changes import JUDGED_LEVEL, draws
 
 TOLERANCE = 1e-6

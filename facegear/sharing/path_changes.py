@@ -9,9 +9,8 @@ from facegear.arrays import Array
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.layout import Layout, Role, Side
 from facegear.machine.machine import Machine
-from facegear.sharing.groups import GroupKind, LoadGroup
+from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions
 from facegear.sharing.mapped_machine import MappedMachine
-from facegear.sharing.options import MapOptions
 
 LEVELS = (50.0, 95.0, 99.0)
 """Percentiles of K_gamma in tables, %."""

@@ -18,9 +18,8 @@ from facegear.motion.steady_state.guide import Guide, guide_of
 from facegear.motion.steady_state.simulate import build_model
 from facegear.quantities import PAST_LAW
 from facegear.sharing.even_shares import even_shares
-from facegear.sharing.groups import LoadGroup, load_groups, quantity_names
+from facegear.sharing.groups import LoadGroup, SharingOptions, load_groups, quantity_names
 from facegear.sharing.hunting import hardest_cycles, hunting_cycle, hunting_length
-from facegear.sharing.options import SharingOptions
 from facegear.sharing.run import measured_motion
 
 LIFE_EXPONENT = 10.0 / 3.0

@@ -16,8 +16,7 @@ from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.motion.sweeps.sweep import carried_over
 from facegear.progress import Progress
 from facegear.sharing.even_shares import group_average, lost_contact, sharing_coefficient
-from facegear.sharing.groups import split_groups
-from facegear.sharing.options import SharingOptions
+from facegear.sharing.groups import SharingOptions, split_groups
 from facegear.sharing.run import FIRST_WINDOW, follow_first_window, watched_for
 from facegear.sharing.statistics import average, densely_sampled
 

@@ -23,8 +23,7 @@ from facegear.motion.steady_state.simulate import (
 )
 from facegear.motion.track import DenseMotion
 from facegear.sharing.even_shares import GroupSharing, _group, _means
-from facegear.sharing.groups import split_groups
-from facegear.sharing.options import SharingOptions
+from facegear.sharing.groups import SharingOptions, split_groups
 from facegear.sharing.statistics import densely_sampled, same_orbit
 
 FIRST_WINDOW, TORUS_WINDOW = 2, 8

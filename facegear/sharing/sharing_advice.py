@@ -14,10 +14,9 @@ import pandas as pd
 from facegear.machine.layout import Role
 from facegear.machine.machine import Machine
 from facegear.number_format import format_number
-from facegear.sharing.groups import GroupKind, LoadGroup, split_groups
+from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions, split_groups
 from facegear.sharing.ideal_machine import IDLERS, predicted_factor
 from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.sharing.options import MapOptions
 from facegear.sharing.path_changes import floated, judged_factor, with_scaled_backlash, with_scaled_bearings
 from facegear.sharing.sharing_map import AS_GIVEN, FLOATING, floating_machine
 

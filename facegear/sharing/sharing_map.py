@@ -18,10 +18,9 @@ from facegear.machine.layout import Role, Side
 from facegear.machine.machine import Machine
 from facegear.sharing.closed_form import k_gamma_samples
 from facegear.sharing.even_shares import even_shares
-from facegear.sharing.groups import GroupKind, LoadGroup, split_groups
+from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions, split_groups
 from facegear.sharing.ideal_machine import loop_factor
 from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.sharing.options import MapOptions
 from facegear.sharing.path_changes import (
     LEVELS,
     draws,

@@ -15,7 +15,7 @@ import numpy as np
 from facegear.arrays import Array, Arrays, Integers
 from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
-from facegear.strength.duty import FlankDuty
+from facegear.strength.materials import FlankDuty
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 from facegear.strength.root_tables import root_from_arrays
 from facegear.teeth.placement import FLANKS, GEARS

@@ -15,8 +15,8 @@ from facegear.arrays import AnyArray, Array, Arrays
 from facegear.machine.poses.surface import PoseSurface
 from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import contact_pressure
-from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact, contacts_of
+from facegear.strength.materials import FlankDuty
 from facegear.strength.rating import LoadStresses
 from facegear.strength.root_stress import RootStress
 from facegear.teeth.placement import FLANKS

@@ -10,8 +10,7 @@ from facegear.arrays import Array
 from facegear.contact.pattern import FILLET_CONTACT
 from facegear.number_format import format_number
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.duty import FlankDuty
-from facegear.strength.materials import BendingLimits, Life, PittingLimits, damage, reliability
+from facegear.strength.materials import BendingLimits, FlankDuty, Life, PittingLimits, damage, reliability
 from facegear.strength.root_stress import RootStress, largest_tension
 from facegear.strength.safety import (
     RatingRequest,

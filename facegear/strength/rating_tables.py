@@ -14,7 +14,7 @@ from facegear.strength.columns import (
     SCUFFED_COLUMNS,
 )
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.duty import DutyBin
+from facegear.strength.materials import DutyBin
 from facegear.strength.rating import FailureRating
 from facegear.strength.root_stress import RootStress
 

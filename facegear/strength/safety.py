@@ -9,8 +9,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.quantities import BODIES
-from facegear.strength.duty import FlankDuty
-from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits, damage
+from facegear.strength.materials import BendingLimits, FlankDuty, Life, MaterialCard, PittingLimits, damage
 from facegear.strength.root_form import (
     STRESS_CORRECTION_REFERENCE,
     RootForm,

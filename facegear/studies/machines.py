@@ -29,11 +29,9 @@ from facegear.motion.sweeps.whole_sweep import jump_margin
 from facegear.quantities import BODIES, JUMP_MARGIN, PEAK
 from facegear.schema.base import keys_named, parse
 from facegear.schema.lubrication import LubricationSection
-from facegear.schema.motion import Accuracy
-from facegear.schema.sharing import LoadSharing
+from facegear.schema.motion import Accuracy, LoadSharing
 from facegear.schema.transmission import Transmission
-from facegear.sharing.groups import quantity_names
-from facegear.sharing.options import SharingOptions
+from facegear.sharing.groups import SharingOptions, quantity_names
 from facegear.sharing.quantities import (
     FlankLoads,
     MachineQuantities,

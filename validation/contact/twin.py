@@ -11,10 +11,10 @@ from math import acos, pi
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.contact.basis_functions import Lattice
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of, flank_cover, flank_points, influence_matrix
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.lattice import Lattice
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import LoadedPosition, first_turn, solve_position
 from facegear.contact.position_solver import PositionContact

@@ -14,7 +14,7 @@ from facegear.motion.plan import Motion, Settings
 from facegear.motion.steady_state.response import SteadyState
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.sharing.even_shares import group_average
-from facegear.sharing.options import SharingOptions
+from facegear.sharing.groups import SharingOptions
 from facegear.sharing.run import Sharing, load_sharing_of_many
 from facegear.sharing.statistics import Average, densely_sampled
 from validation.dynamics.convergence import exact

@@ -6,8 +6,7 @@ from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
 from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.schema.motion import Accuracy
-from facegear.schema.sharing import LoadSharing
+from facegear.schema.motion import Accuracy, LoadSharing
 from validation.dynamics.sharing_costs import COUNT, sharing_costs, sharing_summary
 
 with stage(snakemake) as run:

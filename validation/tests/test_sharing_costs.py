@@ -5,7 +5,7 @@ import pytest
 from lumped_machines import make_machine
 
 from facegear.motion.plan import Settings
-from facegear.sharing.options import SharingOptions, SpeedRange
+from facegear.sharing.groups import SharingOptions, SpeedRange
 from validation.dynamics.sharing_costs import random_machines, sharing_costs, sharing_summary
 
 OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from facegear.motion.branches.columns import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.motion.branches.continuation import Branch
 from facegear.motion.branches.explore import SettledMotion, lies_on
 from facegear.motion.branches.margins import StabilityLimit, passed_by
 from facegear.motion.branches.motion_arrays import SweptMotion, nearest_branch
+from facegear.motion.branches.tables import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.motion.plan import Motion
 
 IRREGULAR = "not periodic"

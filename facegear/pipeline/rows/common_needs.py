@@ -21,6 +21,8 @@ SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
 
 FLANKS = {name: From("compliance", "arrays", wildcards={"body": name}) for name in conditions.BODIES}
 """Compliance of both bodies' flanks."""
+STORED_CONTACT = from_stage("contact", "ltca", "pressure")
+"""Tables and arrays of the contact analysis that friction takes."""
 LAW = {"law": From("mesh_law", "law", when=conditions.load_dependent)}
 """Load-dependent mesh law, where the config asks for it."""
 POSES = {"poses": From("pose_surface", "surface", when=conditions.poses)}

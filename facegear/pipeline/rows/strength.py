@@ -1,6 +1,6 @@
-"""Root stress, and safety and life under a duty cycle."""
+"""Root stress, loss and heat of the machine, and safety and life under a duty cycle."""
 
-from facegear.pipeline import arguments, conditions, machine_conditions
+from facegear.pipeline import arguments, conditions, contact_studies, machine_conditions
 from facegear.pipeline.rows.common_needs import (
     ACCURACY,
     BODIES,
@@ -12,6 +12,7 @@ from facegear.pipeline.rows.common_needs import (
     PAIR,
     POSES,
     SPEED,
+    STORED_CONTACT,
     TOOTH_ERRORS,
 )
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
@@ -104,8 +105,49 @@ LOAD_ROWS = (
             ),
         },
     ),
+    Stage(
+        name="machine_loss",
+        module="friction",
+        title="Loss and heat of the machine",
+        machine="inputs",
+        needs={**PAIR, **MACHINE, **SPEED, "lubrication": "lubrication", "strength": "strength"},
+        section="lubrication",
+        upstream={
+            **STORED_CONTACT,
+            **MOTION_INPUTS,
+            "response": From("dynamics_response", "response", when=machine_conditions.friction_in_motion),
+            "duty_loads": From("duty_loads", "duty_loads", when=machine_conditions.machine_loads),
+        },
+        files={
+            "meshes": File("lubrication/mesh_losses.csv", "facegear.lubrication.columns:MESH_FINITE"),
+            "bodies": File("lubrication/body_heat.csv", ("bin", "speed_rpm", "heat_w"), text=("body",)),
+            "machine": File("lubrication/machine_loss.csv", ("bin", "speed_rpm", "power_in_w", "loss_w")),
+        },
+        condition=machine_conditions.machine_friction,
+        local=True,
+        together=8,
+    ),
+    Stage(
+        name="friction_studies",
+        module="friction",
+        title="Loss and heat of the studies' cases side by side",
+        needs={"points": ComputedValue(contact_studies.friction_points, ("studies",))},
+        upstream={
+            name: From("machine_loss", name, each_wildcards=contact_studies.friction_cases)
+            for name in ("meshes", "machine")
+        },
+        files={
+            "table": File(
+                "lubrication/friction_studies.csv",
+                ("loss_w", "loss_percent", "contact_temperature_c"),
+                text=("study", "point", "label", "hottest_mesh"),
+            )
+        },
+        condition=contact_studies.friction_studied,
+        local=True,
+    ),
 )
-"""Stages on root stress, also at the operating pose, and loads of the duty cycle."""
+"""Stages on root stress, also at the operating pose, loads of the duty cycle, and loss of the machine."""
 
 ROWS = (
     Stage(

@@ -1,7 +1,7 @@
-"""Tooth pair: geometry, meshes, compliance, contact, stiffness."""
+"""Tooth pair: geometry, meshes, compliance, contact, stiffness, friction."""
 
 from facegear.pipeline import arguments, conditions, contact_studies
-from facegear.pipeline.rows.common_needs import FLANKS, PAIR
+from facegear.pipeline.rows.common_needs import FLANKS, PAIR, SPEED, STORED_CONTACT
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
@@ -251,5 +251,37 @@ ROWS = (
         condition=contact_studies.contact_studied,
         local=True,
     ),
+    Stage(
+        name="lubrication",
+        module="friction",
+        title="Sliding, friction, heat and film of the pair",
+        needs={**PAIR, **SPEED, "lubrication": "lubrication"},
+        section="lubrication",
+        upstream=STORED_CONTACT,
+        files={
+            "by_torque": File("lubrication/friction.csv", "facegear.lubrication.columns:BY_TORQUE_FINITE"),
+            "positions": File("lubrication/positions.csv", "facegear.lubrication.columns:POSITION_FINITE"),
+            "limits": File(
+                "lubrication/limits.csv", "facegear.lubrication.columns:LIMIT_COLUMNS", may_be_empty=True
+            ),
+            "map": File("lubrication/map.csv", "facegear.lubrication.columns:MAP_FINITE"),
+            "local": File("lubrication/local.npz", "facegear.lubrication.columns:LOCAL_ARRAYS"),
+            "excitation": File(
+                "lubrication/excitation.csv", "facegear.lubrication.columns:EXCITATION_COLUMNS"
+            ),
+        },
+        figures=Figures(
+            draw="facegear.report.figures.friction:figures",
+            names=("friction_path", "friction_flank", "efficiency_map"),
+            chapter="friction",
+            upstream={
+                "local": From("lubrication", "local"),
+                "pressure": From("contact", "pressure"),
+                "map_table": From("lubrication", "map"),
+            },
+        ),
+        condition=conditions.friction,
+        local=True,
+    ),
 )
-"""Stages on geometry, meshes, compliance, contact, stiffness and pose surface."""
+"""Stages on geometry, meshes, compliance, contact, stiffness, pose surface and friction of the pair."""

@@ -13,8 +13,7 @@ from facegear.machine.machine import Machine
 from facegear.machine.static_gears import at_rest
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
-from facegear.schema.motion import Accuracy
-from facegear.schema.sharing import LoadSharing, SharingMap
+from facegear.schema.motion import Accuracy, LoadSharing, SharingMap
 from facegear.schema.transmission import Transmission
 from facegear.sharing.groups import GroupKind
 from facegear.sharing.hunting import (

@@ -9,10 +9,9 @@ from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
 from facegear.contact import ltca
-from facegear.contact.basis_functions import functions_within
+from facegear.contact.basis_functions import Lattice, functions_within
 from facegear.contact.bodies.surface import face_functions
 from facegear.contact.candidates import candidates_of, flank_cover, flank_points, influence_matrix
-from facegear.contact.lattice import Lattice
 from facegear.contact.ltca import known_contact, loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.position_solver import PositionSolver

@@ -18,7 +18,7 @@ from facegear.pipeline.provenance.fingerprint import reached_functions
 from facegear.pipeline.report_tables import REPORT_TABLES, table_name
 from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES, listing
-from facegear.report.case_texts import SHAFT_TABLES
+from facegear.report.chapter_tables import SHAFT_TABLES
 
 ROOT = Path(__file__).parents[3]
 DRAWN = [stage for stage in STAGES.values() if stage.figures]

@@ -18,8 +18,7 @@ from facegear.machine.loaded_modes import frequency_table, shape_table, vibratin
 from facegear.machine.modes import name_modes
 from facegear.motion.response_tables import response_table
 from facegear.schema.base import parse
-from facegear.schema.motion import Dynamics
-from facegear.schema.sharing import LoadSharing
+from facegear.schema.motion import Dynamics, LoadSharing
 from facegear.schema.stiffness import MeshStiffness, given_series
 from facegear.sharing import reference
 from facegear.sharing.groups import split_groups

@@ -14,7 +14,7 @@ from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.motion.track import SampledTrack, periodic_track
 from facegear.sharing.even_shares import sharing_coefficient
-from facegear.sharing.options import SharingOptions, SpeedRange
+from facegear.sharing.groups import SharingOptions, SpeedRange
 from facegear.sharing.reference import reference_table, slow_forces, speed_range_table, static_forces
 from facegear.sharing.run import load_sharing, load_sharing_of_many, measured_motion
 from facegear.sharing.statistics import densely_sampled, same_orbit

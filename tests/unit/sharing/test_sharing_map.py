@@ -15,9 +15,8 @@ from facegear.errors import ConfigErrors
 from facegear.harmonics import Harmonics
 from facegear.machine.layout import Role, Side
 from facegear.report.sharing_map import sharing_map_tables, sharing_map_text
-from facegear.sharing.groups import GroupKind
+from facegear.sharing.groups import GroupKind, MapOptions
 from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.sharing.options import MapOptions
 from facegear.sharing.path_changes import LEVELS, draws, floated, with_half_backlash, with_scaled_bearings
 
 SPLIT = config_of(3, 1e8, 1e9, 30.0)

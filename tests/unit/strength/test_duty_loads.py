@@ -16,8 +16,8 @@ from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
 from facegear.schema.transmission import Transmission
 from facegear.sharing.even_shares import even_shares
-from facegear.strength.duty import DutyBin, machine_duty
 from facegear.strength.duty_loads import classes, hardest_tooth
+from facegear.strength.materials import DutyBin, machine_duty
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -62,7 +62,7 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     "analytic",
     "turns times meshes of a turn",
     capability="rating",
-    module="facegear.strength.duty",
+    module="facegear.strength.materials",
 )
 def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
     gearbox = facegear.example().with_values(SMOOTH)

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import contacts_of, flank_contacts, met_by, worst_pressure, worst_root
+from facegear.strength.materials import FlankDuty
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays
 from facegear.teeth.placement import GEARS

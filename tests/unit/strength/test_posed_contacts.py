@@ -12,8 +12,8 @@ from references import against, agrees
 from facegear.machine.poses.surface import PoseSurface
 from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact
+from facegear.strength.materials import FlankDuty
 from facegear.strength.posed_contacts import (
     PRESSURE,
     ROOTS,

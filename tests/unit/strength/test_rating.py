@@ -23,8 +23,7 @@ from facegear.schema.cards import CARDS
 from facegear.schema.strength import Strength
 from facegear.schema.yaml_file import read_yaml
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.duty import DutyBin, given_duty
-from facegear.strength.materials import Life, reliability
+from facegear.strength.materials import DutyBin, Life, given_duty, reliability
 from facegear.strength.rating import rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.safety import (
