@@ -87,7 +87,9 @@ def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[Ear
 
 
 def _pair(values: Mapping[str, Any]) -> str:
-    """Return the values that decide the findings about a pair, as text."""
+    """Return a key for the findings about a case's pair, which is looked at once for each key: JSON of the
+    config's `tooth_pair`, `strength` and `mesh_stiffness.source`.
+    """
     return json.dumps([values["tooth_pair"], values["strength"], values["mesh_stiffness"]["source"]])
 
 

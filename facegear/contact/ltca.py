@@ -278,9 +278,10 @@ class _PositionSearch:
         )
 
     def margin(self, row: int) -> float:
-        """Return the factor by which contact is searched beyond the expected rotation.
+        """Return the factor on the expected rotation up to which contact is searched at position `row`.
 
-        It is smaller where a known contact shows how the rotation changes from the position before.
+        It is MARGIN, or the smaller KNOWN_MARGIN from the second position on where `known_contact`, that of a
+        pair that differs little, shows how the rotation changes from position to position.
         """
         return KNOWN_MARGIN if row and self.known_contact is not None else MARGIN
 
@@ -295,7 +296,9 @@ class _PositionSearch:
 
     @cached_property
     def solver(self) -> PositionSolver:
-        """The solver of the pair's positions, with memory that serves all of them."""
+        """Solver of the contact of this pair at any position; all positions use its work arrays, and no
+        position's solution starts from another's.
+        """
         model = self.model
         lattices = model.flanks.pinion.lattice, model.flanks.gear.lattice
         cover = cover_of(model.flanks, self.options)

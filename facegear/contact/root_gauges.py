@@ -179,7 +179,9 @@ def _stiffness(nodes: Array, cells: Integers, material: Material) -> sp.csr_matr
 
 
 def _lagrange(x: float) -> tuple[Array, Array]:
-    """Values and slopes of the three functions of a line element at -1..1."""
+    """Values (3,) and slopes (3,) at x of the quadratic shape functions of a line element with nodes at
+    -1, 0 and 1.
+    """
     values = np.array([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)])
     return values, np.array([x - 0.5, -2.0 * x, x + 0.5])
 

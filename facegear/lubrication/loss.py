@@ -142,17 +142,17 @@ class OverTorque:
         return PchipInterpolator(np.log(self.torques), self.values)(np.log(clipped_torque))
 
     def within(self, torque: Numbers) -> Mask:
-        """Whether torques lie between the smallest and the largest.
+        """Whether magnitudes of torques lie between the smallest and the largest of `torques`, ends included.
 
         Parameters
         ----------
         torque : Numbers
-            Torques of any shape, N m.
+            Torques of any shape and sign, N m.
 
         Returns
         -------
         (torques...) array of bool
-            True within.
+            True where the quantity is known, False where `at` keeps the value of the nearest torque.
         """
         size = np.abs(np.asarray(torque, float))
         return (size >= self.torques[0] * (1 - 1e-12)) & (size <= self.torques[-1] * (1 + 1e-12))

@@ -92,7 +92,9 @@ class Settings:
 
     @property
     def taylor_order(self) -> int:
-        """Order of the steps; higher pays for tighter tolerances."""
+        """Order of the Taylor steps: `order` if given, else 4 - log10(tolerance), rounded, from 6 to 20, as
+        higher orders pay for tighter tolerances.
+        """
         if self.order is not None:
             return self.order
         return min(max(round(4.0 - math.log10(self.tolerance)), 6), 20)

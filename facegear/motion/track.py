@@ -28,20 +28,24 @@ def add_ring_forces(
     body: Integers,
     forces: Array,
 ) -> None:
-    """Write forces along x and y of R bearings with clearance, whose springs act beyond it.
+    """Write the forces of bodies on R bearings whose springs act beyond a radial clearance.
+
+    A body at r = (x, y) presses with F = k (1 - c / |r|) r, and with lag * dF/dt for the damping; inside the
+    clearance both are zero. The components along x and y of the bodies with such a bearing are overwritten,
+    everything else in `forces` stays as it is.
 
     Parameters
     ----------
     displacement, speed : (R, 2, K)
-        Along x and y at K instants, m and m/s.
+        Along x and y of the bearing's body at K instants, m and m/s.
     stiffness, clearance : (R,)
-        N/m and m.
+        Stiffness k beyond the clearance, N/m, and radial clearance c to each side, m.
     lag
         Damping over stiffness, s.
     body : (R,)
-        Whose bearings they are.
+        Index of the body that each bearing holds; no body has two.
     forces : (bodies, 3, K)
-        Written for these bodies, N.
+        Forces along x, y, z, N; changed in place.
     """
     samples.write_ring_forces(displacement, speed, stiffness, clearance, lag, body, forces)
 

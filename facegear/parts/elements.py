@@ -178,23 +178,26 @@ def operator(rows: Rows) -> Array:
 
 
 def form(elements: Elements, left: Array, tensor: Array, right: Array) -> sp.csr_matrix:
-    """Assemble the integral of left^T tensor right over the section.
+    """Assemble the integral of left^T tensor right over the section of an axisymmetric body.
+
+    The weights hold the factor r. The integral over the angle is left out: the caller multiplies by pi, or by
+    2 pi for order 0.
 
     Parameters
     ----------
     elements : Elements
-        The elements.
+        Elements whose weights and numbers of degrees of freedom are used.
     left : (i, 27, elements, points) array
-        Operator, any unit.
+        Operator on U, V, W of the 9 shapes of a quadrilateral at the quadrature points, any unit.
     tensor : (i, j, elements, points or 1) array
-        Material, any unit.
+        Material between the rows of both operators, any unit.
     right : (j, 27, elements, points) array
-        Operator, any unit.
+        Operator as `left`, any unit.
 
     Returns
     -------
     (dofs, dofs) sparse matrix
-        In the product of these units times m3.
+        For each radian, in the product of these units times m3.
     """
     weighted_terms = np.einsum("ijeq,jbeq->eiqb", tensor * elements.weight, right, optimize=True)
     count, rows, points, shapes = weighted_terms.shape

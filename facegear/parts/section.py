@@ -56,7 +56,7 @@ class Layer:
 
     @property
     def depth(self) -> float:
-        """Distance of the layer's two faces, m."""
+        """Thickness of the layer along the axis, from height `back` to `front`, m."""
         return self.front - self.back
 
     @property

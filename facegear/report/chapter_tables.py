@@ -346,15 +346,19 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
 def errors_chapter(tables: Mapping[str, pd.DataFrame]) -> Chapter:
     """Return the chapter on the numerical errors of the results.
 
+    Its one table has a row for each of these that is there: the largest KKT residual and torque imbalance of
+    the contacts, the stiffness that the truncated Fourier series leaves out, and the widest half-width of a
+    load-sharing mean.
+
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the case by name.
+        Tables of the case by name; `ltca`, `harmonics` and `summary` are read, and may be missing.
 
     Returns
     -------
     Chapter
-        The chapter.
+        The chapter, with an empty table if all three are missing.
     """
     rows = []
     if "ltca" in tables:

@@ -158,7 +158,9 @@ def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
 
 
 def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Verdict:
-    """Return the grey verdict of a subject whose section is not given, or whose results are not there."""
+    """Return the grey verdict of a subject without results: not asked for if `values`, those of the config,
+    hold None for `section`, otherwise not computed.
+    """
     reason = f"Not asked for (section {section})." if values[section] is None else NOT_COMPUTED
     return Verdict(subject, GREY, reason)
 

@@ -152,26 +152,26 @@ def average(
 
 
 def held_over_starts(first_average: Average, again: Sequence[float], confidence: float) -> Average:
-    """Return the average of an irregular motion with a half-width that also holds for its means from other
-    starts.
+    """Widen the half-width of an irregular motion's average where runs from other starts differ by more.
 
     Batches of one run show nothing of what changes more slowly than the run lasts, other runs do. Where the
-    variance of the means is more than chance makes of that of the batches (F test at SIGNIFICANCE), the
-    half-width is Student's of a single one of n + 1 runs.
+    variance of the n + 1 means significantly exceeds the variance of a mean that the batches imply (F test at
+    SIGNIFICANCE), the half-width is Student's of a single one of n + 1 runs: t times the standard deviation.
 
     Parameters
     ----------
     first_average : Average
         Average of one run.
     again : sequence of n floats
-        Means of the same motion from other starts, dimensionless.
+        Means of the same motion from other starts, dimensionless; NaN ones do not count.
     confidence : float
         Confidence level from 0 to 1, dimensionless.
 
     Returns
     -------
     Average
-        Dimensionless.
+        The first average, dimensionless, with its mean and everything else but the half-width unchanged; all
+        unchanged where the means do not differ significantly, n is 0 or the half-width is not above 0.
     """
     means = [first_average.mean, *(mean for mean in again if not np.isnan(mean))]
     freedom = len(means) - 1

@@ -166,22 +166,26 @@ def curve_table(ratings: Sequence[FailureRating]) -> pd.DataFrame:
 def damage_table(
     ratings: Sequence[FailureRating], duty: Sequence[DutyBin], pressure: ContactPressure
 ) -> pd.DataFrame:
-    """Tabulate largest torque (with all load factors) and stress, cycles and damage of each bin that loads a
-    flank.
+    """Tabulate the damage of each rating by bin of the duty cycle, one row a bin that loads the flank.
+
+    The ratings hold torque, stress, cycles and damage of every load; a bin may hold several loads. Torque and
+    stress of a row are the largest of its loads, cycles and damage are their sums.
 
     Parameters
     ----------
     ratings : Sequence[FailureRating]
-        Ratings of all flanks.
+        Ratings of all flanks, one for each failure and method.
     duty : Sequence[DutyBin]
-        Bins of the duty cycle.
+        Bins of the duty cycle, which give speed and time.
     pressure : ContactPressure
-        Gives the range of solved torques.
+        Range of solved torques; it decides column `within_torques_solved` alone.
 
     Returns
     -------
     DataFrame
-        Columns as DAMAGE_COLUMNS.
+        Columns as DAMAGE_COLUMNS of `facegear.strength.columns`: body, gear, flank, failure, method, bin
+        (from 1), torque_n_m (with all load factors), speed_rpm, hours, stress_mpa, cycles, damage,
+        within_torques_solved (all loads).
     """
     rows = []
     for rating in ratings:

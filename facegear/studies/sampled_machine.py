@@ -148,7 +148,9 @@ class SampledMachine(VariedMachine):
 
     @cached_property
     def whole_judge(self) -> Judge:
-        """Function that judges a sample over the whole hunting cycle."""
+        """Function from the config values of a sample, see `sample`, to its quantities by column, with loads
+        over every mesh cycle of the hunting cycle.
+        """
         return self.judge_of(replace(self.question, cycles=WHOLE), "this sample")
 
     @cached_property
@@ -186,7 +188,9 @@ class SampledMachine(VariedMachine):
         return values | cycle_deviations | (self._reduction_errors(sample, values) if self.friction else {})
 
     def _reduction_errors(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return the error of the few points of the contact: columns of SIMPLIFICATION_ERRORS."""
+        """Return by how much `values`, whose friction is taken at few points of the contact, differ from the
+        quantities with all points, by column of SIMPLIFICATION_ERRORS: relative, for a temperature in K.
+        """
         whole = self.thorough_judge(sample)
         off = {
             name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFICATION_ERRORS

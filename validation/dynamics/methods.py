@@ -7,7 +7,7 @@ Each is prepared first (memory, compiling for this problem), then run as often a
 import contextlib
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -26,6 +26,8 @@ Prepare = Callable[[Problem, float], Solve]
 """Function of problem and tolerance (or steps a period) that returns a run."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
 """Tolerances that are compared, relative."""
+LAW_TOLERANCES = TOLERANCES[1::2]
+"""Tolerances for other laws, relative: heyoka.py compiles for 3 to 15 s for each of them."""
 PATIENCE, PATIENCE_IRREGULAR = 2.0, 6.0
 """Largest CPU time of a run of a regular and of an irregular motion, s."""
 STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
@@ -361,6 +363,23 @@ def all_methods() -> list[Method]:
     with contextlib.suppress(ImportError):
         methods += [Method(f"CVODE {name}", cvode(name), TOLERANCES) for name in ("BDF", "Adams")]
     return methods
+
+
+def law_methods() -> list[Method]:
+    """List the methods for other laws, ours first: both layouts of each Taylor method, and SciPy's DOP853.
+
+    Returns
+    -------
+    list[Method]
+        The methods.
+    """
+    methods = [
+        Method("facegear", prepare_ours, LAW_TOLERANCES),
+        Method(f"facegear, each of {WIDTH}", beside_others, LAW_TOLERANCES, WIDTH),
+    ]
+    with contextlib.suppress(ImportError):
+        methods += [replace(method, settings=LAW_TOLERANCES) for method in heyoka_methods()]
+    return [*methods, Method("SciPy DOP853", scipy_method("DOP853"), LAW_TOLERANCES)]
 
 
 def tangent_methods() -> list[Method]:

@@ -1,10 +1,14 @@
 """Problems of the comparison: three regimes of a machine, other laws, and the oscillator (a)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
-from facegear.machine.machine import Machine, OpenFlanks, mesh_frequency
+from facegear.door.outputs import machine_of
+from facegear.gearbox import Gearbox
+from facegear.machine.machine import Machine, mesh_frequency
+from facegear.meshing.power import PowerLaw
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.integrator.system import System
 from facegear.motion.plan import Motion, Settings, State
@@ -17,6 +21,22 @@ FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
 """Factors on the speed at which irregular motion is searched, in this order."""
 PERIODS, IRREGULAR_PERIODS = 24, 400
 """Mesh periods of regular and of irregular motion."""
+
+LAW_SPEED = 1.6
+"""Factor on the speed of the example machine for other laws: 12 000 rpm, where contact is lost."""
+OIL = {
+    "oil": "polyol_ester_5_cst",
+    "supply_temperature_c": 100,
+    "pinion": {"ra_um": 0.3},
+    "face_gear": {"ra_um": 0.3},
+    "bulk": {"source": "cooling", "pinion_w_per_k": 60, "face_gear_w_per_k": 200},
+    "friction": {"effect": "excitation"},
+}
+"""Section `lubrication` of a machine whose friction excites it."""
+CLEARANCE_UM = 20.0
+"""Radial clearance of the pinions' bearings, um."""
+POWER: Mapping[str, float] = {"size": 6e10, "exponent": 1.5, "depth": 0.1, "level": 2e-6, "largest": 4e-4}
+"""Hertz's law of a sphere, so stiff that contact is lost at LAW_SPEED; SI units."""
 
 
 class ComparedResult(StrEnum):
@@ -73,30 +93,51 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     return problems
 
 
-def law_problems(machine: Machine, load_dependent: Machine, speed_rpm: float) -> list[Problem]:
-    """List the problems of other laws: a damper in contact only, and a stiffness that depends on the load.
+def law_machines(gearbox: Gearbox) -> dict[str, Machine]:
+    """Return a machine with two flanks a mesh for each law and element beside the linear law.
 
     Parameters
     ----------
-    machine : Machine
-        With a linear law; its damper is made to act in contact alone.
-    load_dependent : Machine
-        With a load-dependent law.
+    gearbox : Gearbox
+        The example machine, or another that has teeth and a transmission.
+
+    Returns
+    -------
+    dict
+        Machines by the name of the law or element.
+    """
+    linear = {"mesh_stiffness.mesh_law": "constant_load"}
+    changes: dict[str, Mapping[str, Any]] = {
+        "damper in contact only": linear,
+        "load-dependent law": {},
+        "flanks that only push": {**linear, "transmission.damping.open_flanks": "push_only"},
+        "friction": {**linear, "lubrication": OIL},
+        "bearing clearance": {**linear, "transmission.pinion.clearance_um": CLEARANCE_UM},
+    }
+    machines = {name: machine_of(gearbox.with_values(change)) for name, change in changes.items()}
+    machine = machines["damper in contact only"]
+    law = PowerLaw(**POWER, contacts=2 * len(machine.layout.meshes))
+    return {**machines, "power law": replace(machine, law=law)}
+
+
+def law_problems(machines: Mapping[str, Machine], speed_rpm: float) -> list[Problem]:
+    """List one problem for each machine.
+
+    Parameters
+    ----------
+    machines : mapping
+        Machines by the name of their law or element.
     speed_rpm : float
-        Pinion speed, rpm; the former runs at 0.6 of it, where contact is lost.
+        Pinion speed, rpm; one at which contact is lost.
 
     Returns
     -------
     list of Problem
-        One for each law.
+        Problems in the order of the machines.
     """
-    damping = replace(machine.damping, open_flanks=OpenFlanks.CONTACT_ONLY)
-    in_contact = replace(machine, damping=damping)
     return [
-        _problem("damper in contact only", in_contact, 0.6 * speed_rpm, PERIODS, ComparedResult.DEFLECTIONS)[
-            0
-        ],
-        _problem("load-dependent law", load_dependent, speed_rpm, PERIODS, ComparedResult.DEFLECTIONS)[0],
+        _problem(name, machine, speed_rpm, PERIODS, ComparedResult.DEFLECTIONS)[0]
+        for name, machine in machines.items()
     ]
 
 

@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.schema.motion import SWEEP_ACCURACY
+from validation.dynamics.problems import OIL
 from validation.ratios.points import EXAMPLE, ROOT
 from validation.ratios.run import BASELINE, Job, is_regular, read_answers, relative_change
 from validation.ratios.trees import Tree, checked_out, present
@@ -165,14 +166,6 @@ def _sweep(config: str, direction: str, **changes: Any) -> Case:
     return Case(config, changes=changes, direction=direction)
 
 
-OIL = {
-    "oil": "polyol_ester_5_cst",
-    "supply_temperature_c": 100,
-    "pinion": {"ra_um": 0.3},
-    "face_gear": {"ra_um": 0.3},
-    "bulk": {"source": "cooling", "pinion_w_per_k": 60, "face_gear_w_per_k": 200},
-    "friction": {"effect": "excitation"},
-}
 CLEARANCE, FLANKS, LAW = (
     "transmission.pinion.clearance_um",
     "transmission.damping.open_flanks",

@@ -107,7 +107,8 @@ def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
     stage = STAGES[request["stage"]]
     arguments = chain(gearbox.values, store(partial=partial_results(Path(inputs)))).arguments(stage.name)
-    convert = stage.typed_wildcards if hasattr(stage, "typed_wildcards") else getattr(stage, "typed", dict)
+    names = ("typed_wildcards", "typed")  # the second in the baseline
+    convert = next(getattr(stage, name) for name in names if hasattr(stage, name))
     return lambda: call(stage, arguments, **convert(request["wildcards"])).content
 
 

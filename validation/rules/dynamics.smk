@@ -6,6 +6,8 @@ rule dynamics_work_precision:
         table="results/{case}/benchmarks/dynamics.csv",
         svg="results/{case}/figures/dynamics_work_precision.svg",
         png="results/{case}/figures/dynamics_work_precision.png",
+        svg_of_laws="results/{case}/figures/dynamics_work_precision_laws.svg",
+        png_of_laws="results/{case}/figures/dynamics_work_precision_laws.png",
         manifest="results/{case}/benchmarks/dynamics.provenance.json",
     log:
         "results/{case}/logs/dynamics_work_precision.log",

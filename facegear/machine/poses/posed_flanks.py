@@ -152,10 +152,13 @@ def _light(last: float, logs: Array, slope: Array) -> Array:
 
 
 def _above(surface: PoseSurface, stiffness_logs: Array, ends: Array) -> Array:
-    """Return G and its derivatives (3,) of loads from the first to the last of logarithms `ends` of torques,
-    between nodes.
+    """Integrate T / stiffness over the torque T between the exponentials of the first and last of `ends`.
 
-    stiffness_logs: as `PoseSurface.stiffness_logs` has it.
+    The result (3,) is the complementary energy G for a base radius of 1 m, J, and its derivatives by path,
+    J/m, and angle, J/rad.
+
+    stiffness_logs: (3, torques) array that `PoseSurface.stiffness_logs` returns. ends: rising logarithms of
+    torques in N m, the surface's nodes and the last torque; Gauss's rule is applied between neighbours.
     """
     half = 0.5 * np.diff(ends)[:, None]
     at = ends[:-1, None] + half * (POINTS + 1.0)

@@ -233,28 +233,31 @@ def _describe_location(period_map: PeriodMap, x: Array) -> str:
 
 
 def correct_state(period_map: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
-    """Find the orbit next to a guess as correct() does, with a matrix from nearby where that suffices.
+    """Find the orbit next to a guess without a new matrix where that suffices, otherwise by `correct`.
+
+    Quasi-Newton steps start with the matrix of `linear`. Their best point is returned if its change over the
+    period is at most STALL_FACTOR times the goal; otherwise `correct` starts from the guess.
 
     Parameters
     ----------
     period_map : PeriodMap
         Map over whole mesh periods.
     guess : (2 n + 1,) array
-        Weighted state and logarithm of the parameter, dimensionless.
+        State as of PeriodMap, followed by the logarithm of the family's parameter, dimensionless.
     row : (2 n + 1,) array
-        Condition that selects the orbit, dimensionless.
+        Condition row . (x - guess) = 0 that selects the orbit x, dimensionless.
     linear : Linear
         Linearised map near the guess.
 
     Returns
     -------
     (2 n + 1,) array
-        The orbit, dimensionless.
+        The orbit in the order of the guess, dimensionless.
 
     Raises
     ------
     NotConverged
-        If Newton's method does not converge.
+        If neither method converges.
     """
     x, size = _by_chord(period_map, guess.copy(), guess, row, linear, _goal(period_map))
     if size > STALL_FACTOR * _goal(period_map):

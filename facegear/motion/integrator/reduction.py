@@ -210,21 +210,27 @@ class Reduction:
 
 
 def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduction:
-    """Reduce the coordinates of a linear model. Torques are in balance, so the rigid rotation stays at rest.
+    """Reduce the coordinates of a linear model exactly: leave out what no force excites and no mesh feels.
+
+    Nothing is truncated. The basis keeps all motions that the contacts, the bearings with clearance, `pushes`
+    or a coupling excite or feel. Among the others is the rigid rotation, which stays at rest as the torques
+    are in balance.
 
     Parameters
     ----------
     linear : LinearModel
         Masses, bearings, loads and mesh rows of all degrees of freedom.
     contacts : int
-        Number of the model's rows that are contacts, see Layout.contacts.
+        Number of contacts, see Layout.contacts: the first rows of `linear.rows` are theirs.
     pushes : (rows, dof) array
-        Directions of other forces, any unit.
+        Generalised directions of all forces beside those of the contacts, such as external forces and
+        friction; any unit.
 
     Returns
     -------
     Reduction
-        Reduced coordinates.
+        Basis, and mesh Jacobian, squared frequencies, damping, load and coupling in its mass-normalised
+        coordinates.
     """
     stiffness = linear.stiffness_without_rings
     mesh_jacobian = np.concatenate([linear.rows[:contacts], *_ring_rows(linear)])

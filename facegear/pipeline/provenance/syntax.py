@@ -352,7 +352,9 @@ class Walk:
                 self.visit(default)
 
     def _visit_caught(self, node: ast.ExceptHandler) -> None:
-        """Record an except clause; its name is bound."""
+        """Add an except clause with its type and body to the part's code and uses, and its name to the bound
+        names.
+        """
         self.part.bound.add(node.name or "")
         self.part.code.append(f"except {node.name}")
         if node.type:
