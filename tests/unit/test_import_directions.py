@@ -32,6 +32,7 @@ MAY_IMPORT = {
     "sparse": set(),
     "contact": {"teeth", "meshing", "sparse"},
     "parts": {"teeth", "sparse", "contact"},
+    "bearings": {"parts"},
     "machine": {"teeth", "meshing", "parts"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
