@@ -134,24 +134,6 @@ class PointContact:
         length = first * (self.curvature / (self.axis_ratio**2 * second)) ** (1.0 / 3.0)
         return float(np.pi / np.sqrt(4.5) * self.modulus * length**-1.5)
 
-    def pressure(self, load: Array) -> Array:
-        """Return the largest pressure.
-
-        Parameters
-        ----------
-        load : (...) array
-            N.
-
-        Returns
-        -------
-        (...) array
-            Pa.
-        """
-        _, second = self.integrals
-        volume = 6.0 * self.axis_ratio**2 * second * load / (np.pi * self.curvature * self.modulus)
-        area = np.pi * np.cbrt(volume) ** 2 / self.axis_ratio
-        return np.where(load > 0.0, 1.5 * load / np.where(load > 0.0, area, 1.0), 0.0)
-
 
 def touch_groove(ball: float, groove: float, pitch_ratio: float, modulus: float) -> PointContact:
     """Make the contact of a ball with a groove.
@@ -462,26 +444,6 @@ class RollerBearing(RollingBearing):
         """
         total = self.slice_stiffness * self.slices
         return LINE_EXPONENT * total**0.9 * load**0.1
-
-    def pressures(self, load: Array) -> tuple[Array, Array]:
-        """Return the largest pressure at inner and outer ring.
-
-        Parameters
-        ----------
-        load : (...) array
-            Load of a slice, N.
-
-        Returns
-        -------
-        (...) array, (...) array
-            Pa.
-        """
-        line_load = load * self.slices / self.effective_length
-        curvatures = 2.0 / (self.element_diameter * np.array([1.0 - self.pitch_ratio, 1 + self.pitch_ratio]))
-        inner, outer = (
-            np.sqrt(line_load * curvature * self.modulus / (2.0 * np.pi)) for curvature in curvatures
-        )
-        return inner, outer
 
 
 AnyBearing = BallBearing | RollerBearing

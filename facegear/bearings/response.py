@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear._kernels import bearings as kernels
 from facegear.arrays import AnyArray, Array, Mask
-from facegear.bearings.elements import LINE_EXPONENT, AnyBearing, BallBearing, RollerBearing
+from facegear.bearings.elements import AnyBearing, BallBearing, PointContact
 from facegear.errors import NotConverged
 from facegear.rigid_body import MOTIONS
 
@@ -14,6 +14,8 @@ BALL_LIMIT, ROLLER_LIMIT = 4200e6, 4000e6
 """Largest pressure, Pa, that leaves an indentation of 1e-4 of an element's diameter (ISO 76)."""
 ZONE_SAMPLES = 720
 """Angles at which the load zone is searched; its ends between them are halved to rounding."""
+JUST_TOUCHING = 4e-15
+"""Approach over the lengths that it is the difference of, dimensionless, that rounding may make."""
 HALVINGS = 50
 """Halvings of the interval between two angles."""
 
@@ -147,10 +149,22 @@ def largest_pressures(bearing: AnyBearing, loads: ElementLoads) -> Array:
         Pa.
     """
     inner, outer = loads.inner.max(axis=(1, 2)), loads.outer.max(axis=(1, 2))
+    both_loads = np.stack([inner, outer], axis=-1)
     if isinstance(bearing, BallBearing):
-        at_inner, at_outer = bearing.contacts
-        return np.stack([at_inner.pressure(inner), at_outer.pressure(outer)], axis=-1)
-    return np.stack([bearing.pressures(inner)[0], bearing.pressures(outer)[1]], axis=-1)
+        pairs = zip(bearing.contacts, both_loads.T, strict=True)
+        return np.stack([_point_pressure(contact, load) for contact, load in pairs], axis=-1)
+    line_load = both_loads * bearing.slices / bearing.effective_length
+    gamma = np.array([bearing.pitch_ratio, -bearing.pitch_ratio])
+    curvature = 2.0 / (bearing.element_diameter * (1.0 - gamma))
+    return np.sqrt(line_load * curvature * bearing.modulus / (2.0 * np.pi))
+
+
+def _point_pressure(contact: PointContact, load: Array) -> Array:
+    """Return the largest pressure (Pa) of a contact ellipse at loads (K,), N."""
+    ratio, (_, second) = contact.axis_ratio, contact.integrals
+    volume = 6.0 * ratio**2 * second * load / (np.pi * contact.curvature * contact.modulus)
+    area = np.pi * np.cbrt(volume) ** 2 / ratio
+    return np.where(load > 0.0, 1.5 * load / np.where(load > 0.0, area, 1.0), 0.0)
 
 
 def static_safety(bearing: AnyBearing, pressure: Array) -> Array:
@@ -173,6 +187,24 @@ def static_safety(bearing: AnyBearing, pressure: Array) -> Array:
     return np.where(is_loaded, (limit / np.where(is_loaded, pressure, 1.0)) ** exponent, np.inf)
 
 
+def largest_gap(bearing: AnyBearing) -> float:
+    """Return the largest length that contacts subtract from another one, whose rounding is that of forces.
+
+    Parameters
+    ----------
+    bearing : BallBearing or RollerBearing
+        The bearing.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    if isinstance(bearing, BallBearing):
+        return bearing.groove_distance
+    return abs(bearing.clearance) + float(bearing.drops.max())
+
+
 def load_zone(bearing: AnyBearing, motion: Array) -> float:
     """Return the angle over which an element would be loaded, wherever the elements stand.
 
@@ -189,7 +221,8 @@ def load_zone(bearing: AnyBearing, motion: Array) -> float:
         rad, from 0 to 2 pi.
     """
     angles = 2.0 * np.pi * np.arange(ZONE_SAMPLES) / ZONE_SAMPLES
-    approach = _approach(bearing, motion, angles)
+    least = JUST_TOUCHING * largest_gap(bearing)
+    approach = _approach(bearing, motion, angles) - least
     beyond = np.roll(approach, -1)
     step = angles[1]
     whole = float(np.count_nonzero((approach > 0.0) & (beyond > 0.0)) * step)
@@ -198,7 +231,7 @@ def load_zone(bearing: AnyBearing, motion: Array) -> float:
     rises = beyond[ends] > 0.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        is_before = (_approach(bearing, motion, angles[ends] + middle) > 0.0) != rises
+        is_before = (_approach(bearing, motion, angles[ends] + middle) > least) != rises
         low, high = np.where(is_before, middle, low), np.where(is_before, high, middle)
     return whole + float(np.where(rises, step - low, low).sum())
 
@@ -223,19 +256,3 @@ def _approach(bearing: AnyBearing, motion: Array, angles: Array) -> Array:
     if rollers.centrifugal:
         return np.asarray((slices - rollers.free_position - rollers.drops).max(axis=1))
     return np.asarray((slices - 2.0 * rollers.drops).max(axis=1))
-
-
-def contact_exponent(bearing: AnyBearing) -> float:
-    """Return the exponent of the load of a contact by its approach.
-
-    Parameters
-    ----------
-    bearing : BallBearing or RollerBearing
-        The bearing.
-
-    Returns
-    -------
-    float
-        1.5 for balls, 10/9 for rollers.
-    """
-    return LINE_EXPONENT if isinstance(bearing, RollerBearing) else 1.5

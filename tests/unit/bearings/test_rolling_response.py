@@ -52,7 +52,7 @@ def test_loaded_elements_and_zone_at_public_motions(case):
 
 
 def test_the_zone_of_a_radial_load_is_that_of_its_closed_form():
-    for bearing, middle in ((P1, 0.0), (replace(P3, slices=40_001), 0.0)):
+    for bearing, middle in ((P1, 0.0), (replace(P3, slices=2001), 0.0)):
         x = 35e-6
         expected = 2.0 * np.arccos((0.5 * bearing.clearance + middle) / x)
         assert load_zone(bearing, np.array([x, 0.0, 0.0, 0.0, 0.0])) == pytest.approx(expected, abs=1e-6)

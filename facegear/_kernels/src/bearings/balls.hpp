@@ -69,10 +69,10 @@ struct ThrownBall {
                 i.first_second + e.first_second,
                 i.second_second + e.second_second};
     }
-    bool is_small(Position step, Position ball) const {
-        return std::fabs(step.first) + std::fabs(step.second) <=
-               ROUNDINGS * (std::fabs(ball.first) + std::fabs(ball.second));
-    }
+    static double arm() { return 1.0; }
+    // Of the outer contact across its normal, under the centrifugal force alone.
+    double softest() const { return bearing.centrifugal / bearing.outer_length; }
+    static double size(Position ball) { return std::fabs(ball.first) + std::fabs(ball.second); }
     // On the line between both centres, as without the force; outside the inner contact where that is open.
     Position start() const {
         const double distance = std::sqrt(centre.first * centre.first + centre.second * centre.second);
@@ -114,10 +114,10 @@ inline bool respond(const Balls& bearing, Position centre, Derivatives& result, 
         ball = thrown.start();
         is_found = settle(thrown, ball);
     }
-    const Derivatives inner = thrown.inner(ball), outer = thrown.outer(ball), total = thrown.at(ball);
+    const Derivatives inner = thrown.inner(ball), outer = thrown.outer(ball);
     result = inner;
-    result.energy = total.energy - bearing.free_energy;
-    eliminate_position(inner, total, result);
+    result.energy = inner.energy + outer.energy - bearing.centrifugal * ball.first - bearing.free_energy;
+    put_in_series(inner, outer, result);
     contacts = {size_of(inner), size_of(outer),
                 std::atan2(centre.second - ball.second, centre.first - ball.first),
                 std::atan2(ball.second, ball.first)};

@@ -8,10 +8,15 @@
 
 namespace facegear::bearings {
 
-// Newton steps and halvings of a line search after which a search is given up; real elements need some ten.
-constexpr int MAX_STEPS = 200, MAX_HALVINGS = 60;
-// A step this small beside the size of the coordinates, in units of rounding, ends a search.
+// Newton steps and evaluations along one of them after which a search is given up. Elements need some ten
+// steps; hundreds where a ring is a millimetre off and a ball follows its groove.
+constexpr int MAX_STEPS = 2000, MAX_HALVINGS = 60;
+// A step this small beside the size of the coordinates ends a search, or forces that a move of this size
+// makes: a ball that hardly touches gives way so easily along its grooves that rounded forces move it
+// further.
 constexpr double ROUNDINGS = 4.0 * std::numeric_limits<double>::epsilon();
+// Spring to ground over the softest contact: steps lose no more than this part of their length.
+constexpr double TIE = 1e-3;
 // Slope at the end of a step, over that at its beginning, from which the step is shortened.
 constexpr double STEEP = 0.1;
 
@@ -23,24 +28,23 @@ struct Position {
     }
 };
 
-// Step that solves H step = -gradient, with a spring to ground where H leaves a direction free.
-inline Position newton_step(const Derivatives& at) {
-    const double tie = 1e-14;
-    const double first_first = at.first_first * (1.0 + tie) + std::numeric_limits<double>::min();
-    const double second_second = at.second_second * (1.0 + tie) + std::numeric_limits<double>::min();
+// Step that solves (H + tie) step = -gradient: a spring to ground where no contact holds the element.
+inline Position newton_step(const Derivatives& at, double tie, double arm) {
+    const double first_first = at.first_first + tie, second_second = at.second_second + tie * arm * arm;
     const double determinant = first_first * second_second - at.first_second * at.first_second;
     return {-(second_second * at.first - at.first_second * at.second) / determinant,
             -(first_first * at.second - at.first_second * at.first) / determinant};
 }
 
 // Moves a position to the minimum of a convex energy, by Newton's method; false where it does not get there.
-// `energy.at(position)` returns derivatives, `energy.is_small(step, position)` whether a step is mere
-// rounding.
+// `energy.at(position)` returns derivatives, `energy.size(position)` a length, and `energy.arm()` the length
+// that makes one of the second coordinate.
 template <class Energy>
 inline bool settle(const Energy& energy, Position& position) {
     Derivatives here = energy.at(position);
+    const double arm = energy.arm(), tie = TIE * energy.softest();
     for (int i = 0; i < MAX_STEPS; ++i) {
-        const Position step = newton_step(here);
+        const Position step = newton_step(here, tie, arm);
         const auto slope = [&](const Derivatives& at) {
             return at.first * step.first + at.second * step.second;
         };
@@ -48,40 +52,45 @@ inline bool settle(const Energy& energy, Position& position) {
         if (!std::isfinite(start)) return false;
         if (start == 0.0) return true;
         // The energy is convex along the step: its slope tells on which side of the minimum a position is.
-        double low = 0.0, high = 1.0, fraction = 1.0;
+        double low = 0.0, high = std::numeric_limits<double>::infinity(), fraction = 1.0;
         Derivatives there = energy.at(position.moved(step, 1.0));
         for (int j = 0; j < MAX_HALVINGS; ++j) {
             const double ahead = slope(there);
-            if (std::fabs(ahead) <= STEEP * std::fabs(start) || (ahead < 0.0 && fraction == 1.0)) break;
+            if (std::fabs(ahead) <= STEEP * std::fabs(start)) break;
             (ahead < 0.0 ? low : high) = fraction;
-            fraction = 0.5 * (low + high);
+            fraction = std::isfinite(high) ? 0.5 * (low + high) : 4.0 * fraction;
             there = energy.at(position.moved(step, fraction));
         }
         position = position.moved(step, fraction);
         here = there;
-        if (energy.is_small({fraction * step.first, fraction * step.second}, position)) return true;
+        const double small = ROUNDINGS * energy.size(position);
+        const double moved = fraction * (std::fabs(step.first) + arm * std::fabs(step.second));
+        const double force = std::fabs(here.first) + std::fabs(here.second) / arm;
+        const double stiffness = here.first_first + here.second_second / (arm * arm);
+        if (moved <= small || force <= small * stiffness) return true;
     }
     return false;
 }
 
-// What remains of the inner contact's stiffness once the element follows: H_i - H_i (H_i + H_e)^-1 H_i, which
-// is H_e (H_i + H_e)^-1 H_i.
-inline void eliminate_position(const Derivatives& inner, const Derivatives& total, Derivatives& result) {
-    const double determinant =
-        total.first_first * total.second_second - total.first_second * total.first_second;
-    const bool is_free = inner.first_first == 0.0 && inner.second_second == 0.0;
-    if (is_free || !(determinant > 0.0)) {
+// Stiffness of both contacts in a row once the element follows, H_e (H_i + H_e)^-1 H_i: the Schur complement
+// of the inner one, without the difference of large numbers.
+inline void put_in_series(const Derivatives& inner, const Derivatives& outer, Derivatives& result) {
+    const double sum[3] = {inner.first_first + outer.first_first, inner.first_second + outer.first_second,
+                           inner.second_second + outer.second_second};
+    const double determinant = sum[0] * sum[2] - sum[1] * sum[1];
+    if (inner.first_first + inner.second_second == 0.0 || determinant <= 0.0) {
         result.first_first = result.first_second = result.second_second = 0.0;
         return;
     }
-    const double a = inner.first_first, b = inner.first_second, c = inner.second_second;
-    const double inverse[3] = {total.second_second / determinant, -total.first_second / determinant,
-                               total.first_first / determinant};
-    const double a_first = a * inverse[0] + b * inverse[1], a_second = a * inverse[1] + b * inverse[2];
-    const double b_first = b * inverse[0] + c * inverse[1], b_second = b * inverse[1] + c * inverse[2];
-    result.first_first = a - (a_first * a + a_second * b);
-    result.first_second = b - (a_first * b + a_second * c);
-    result.second_second = c - (b_first * b + b_second * c);
+    // Columns of (H_i + H_e)^-1 H_i.
+    const double a = (sum[2] * inner.first_first - sum[1] * inner.first_second) / determinant;
+    const double b = (sum[0] * inner.first_second - sum[1] * inner.first_first) / determinant;
+    const double c = (sum[2] * inner.first_second - sum[1] * inner.second_second) / determinant;
+    const double d = (sum[0] * inner.second_second - sum[1] * inner.first_second) / determinant;
+    result.first_first = outer.first_first * a + outer.first_second * b;
+    result.first_second = 0.5 * (outer.first_first * c + outer.first_second * d + outer.first_second * a +
+                                 outer.second_second * b);
+    result.second_second = outer.first_second * c + outer.second_second * d;
 }
 
 } // namespace facegear::bearings

@@ -87,11 +87,12 @@ struct ThrownRoller {
                 i.first_second + e.first_second,
                 i.second_second + e.second_second};
     }
-    bool is_small(Position step, Position roller) const {
-        const double half = std::fabs(bearing.positions[bearing.positions.size - 1]);
-        const double size = std::fabs(roller.first) + std::fabs(ring.first) +
-                            half * (std::fabs(roller.second) + std::fabs(ring.second));
-        return std::fabs(step.first) + half * std::fabs(step.second) <= ROUNDINGS * size;
+    double arm() const { return std::fabs(bearing.positions[bearing.positions.size - 1]); }
+    // Of the outer contact under the centrifugal force alone.
+    double softest() const { return bearing.centrifugal / bearing.free_position; }
+    double size(Position roller) const {
+        return std::fabs(roller.first) + std::fabs(ring.first) + bearing.drops[0] +
+               arm() * (std::fabs(roller.second) + std::fabs(ring.second));
     }
     // Half-way between both rings, but not above the position that the force alone gives.
     Position start() const {
@@ -123,10 +124,10 @@ inline bool respond(const Rollers& bearing, Position ring, Derivatives& result) 
     const ThrownRoller thrown{bearing, ring};
     Position roller{0.0, 0.0};
     const bool is_found = find_position(thrown, roller);
-    const Derivatives inner = thrown.inner(roller), total = thrown.at(roller);
+    const Derivatives inner = thrown.inner(roller), outer = thrown.outer(roller);
     result = inner;
-    result.energy = total.energy - bearing.free_energy;
-    eliminate_position(inner, total, result);
+    result.energy = inner.energy + outer.energy - bearing.centrifugal * roller.first - bearing.free_energy;
+    put_in_series(inner, outer, result);
     return is_found;
 }
 
