@@ -123,7 +123,8 @@ def _search_line(
 ) -> tuple[Array, Curvature]:
     """Return the motion along a step at which the energy is least, and its derivatives there."""
     moves = step != 0.0
-    fractions = np.where(step > 0.0, reach - motion, reach + motion)[moves] / np.abs(step[moves])
+    with np.errstate(over="ignore"):
+        fractions = np.where(step > 0.0, reach - motion, reach + motion)[moves] / np.abs(step[moves])
     limit = max(float(fractions.min(initial=np.inf)), 0.0)
     low, high, fraction, is_bracketed = 0.0, limit, min(1.0, limit), False
     for _ in range(LINE_STEPS):

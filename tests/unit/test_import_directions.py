@@ -39,8 +39,8 @@ MAY_IMPORT = {
     "strength": {"teeth", "contact", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
-        *("schema", "teeth", "meshing", "contact", "parts", "machine", "motion", "sharing", "strength"),
-        "lubrication",
+        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion", "sharing"),
+        *("strength", "lubrication"),
     },
     "exchange": {"schema", "build", "teeth", "meshing", "machine", "motion"},
     "studies": {
