@@ -49,10 +49,26 @@ LIFTED = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Curvature:
-    """First and second derivatives of an energy: gradient (n,), N and N m, and matrix (n, n)."""
+    """Energy at a motion, with its first and second derivatives.
 
+    Attributes
+    ----------
+    energy
+        J.
+    gradient : (n,)
+        N and N m.
+    matrix : (n, n)
+        N/m, N/rad and N m/rad.
+    size, rounding
+        Largest force that adds to the gradient, and the error of forces by rounding, N; moments by their
+        arms.
+    """
+
+    energy: float
     gradient: Array
     matrix: Array
+    size: float
+    rounding: float
 
 
 def minimise(
@@ -62,7 +78,6 @@ def minimise(
     scale: Array,
     tie: float,
     reach: float,
-    gap: float,
 ) -> Array:
     """Minimise a convex energy less the work of a load.
 
@@ -80,8 +95,6 @@ def minimise(
         Stiffness that the load would meet in one element, N/m.
     reach : float
         Motion, m, beyond which nothing holds the load.
-    gap : float
-        Largest length inside a bearing, m, whose rounding is that of its forces.
 
     Returns
     -------
@@ -99,13 +112,10 @@ def minimise(
     for _ in range(STEPS):
         error = (curve.gradient - load) / scale
         matrix = curve.matrix / np.outer(scale, scale)
-        # A bent shaft brings further coordinates, stiff without rounding anything of the bearings.
-        largest = float(np.abs(matrix[:MOTIONS, :MOTIONS]).max())
-        rounding = np.finfo(float).eps * largest * max(gap, float(np.abs(motion * scale).max()))
-        force = max(size, float(np.abs(curve.gradient / scale).max()))
-        if float(np.abs(error).max()) <= TOLERANCE * force + ROUNDINGS * rounding:
+        force = max(size, curve.size)
+        if float(np.abs(error).max()) <= TOLERANCE * force + curve.rounding:
             return motion
-        spring = part * max(tie, LAST_TIE * largest) * np.eye(error.size)
+        spring = part * max(tie, LAST_TIE * float(np.abs(matrix).max())) * np.eye(error.size)
         step = np.linalg.solve(matrix + spring, -error) / scale
         motion, curve = _search_line(derivatives, motion, step, load, error @ (step * scale), reach / scale)
         part = max(TIE_FALL * part, LAST_TIE)
@@ -237,6 +247,31 @@ def state_at(bearing: AnyBearing, motion: Array) -> BearingState:
     return BearingState(bearing, motion, response.force[0], response.stiffness[0])
 
 
+def bearing_curve(bearing: AnyBearing, motion: Array) -> Curvature:
+    """Return the energy of a bearing and its derivatives at a motion of the inner ring.
+
+    Parameters
+    ----------
+    bearing : BallBearing or RollerBearing
+        The bearing.
+    motion : (5,) array
+        m and rad.
+
+    Returns
+    -------
+    Curvature
+        J, N, N m, N/m, N/rad and N m/rad.
+    """
+    response, scale = respond(bearing, motion[None]), _scale(bearing.pitch_diameter)
+    force, stiffness = response.force[0], response.stiffness[0]
+    length = max(largest_gap(bearing), float(np.abs(motion * scale).max()))
+    largest = float(np.abs(stiffness / np.outer(scale, scale)).max())
+    rounding = ROUNDINGS * np.finfo(float).eps * largest * length
+    return Curvature(
+        float(response.energy[0]), force, stiffness, float(np.abs(force / scale).max()), rounding
+    )
+
+
 def find_equilibrium(bearing: AnyBearing, load: Array, start: Array | None = None) -> BearingState:
     """Find the motion at which a bearing carries a load.
 
@@ -272,12 +307,11 @@ def find_equilibrium(bearing: AnyBearing, load: Array, start: Array | None = Non
         raise InvalidInput("thrust of a cylindrical roller bearing", float(load[2]), requirement)
 
     def derivatives(motion: Array) -> Curvature:
-        response = respond(bearing, motion[None])
-        return Curvature(response.force[0], response.stiffness[0])
+        return bearing_curve(bearing, motion)
 
     begin = np.zeros(MOTIONS) if start is None else start
     tie, reach = bearing.stiffness_at(max(size, 1.0)), ESCAPE * bearing.element_diameter
-    state = state_at(bearing, minimise(derivatives, begin, load, scale, tie, reach, largest_gap(bearing)))
+    state = state_at(bearing, minimise(derivatives, begin, load, scale, tie, reach))
     if state.is_on_wrong_side:
         axis = "+z" if bearing.direction > 0 else "-z"
         requirement = f"along {axis} and large enough to press all loaded balls against their shoulders"

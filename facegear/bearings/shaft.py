@@ -8,8 +8,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing
-from facegear.bearings.equilibrium import ESCAPE, Curvature, minimise
-from facegear.bearings.response import largest_gap, respond
+from facegear.bearings.equilibrium import ESCAPE, Curvature, bearing_curve, minimise
 from facegear.parts.shafts import Elasticity, Segment, clamped_compliance
 from facegear.rigid_body import MOTIONS, carry_motion
 
@@ -49,10 +48,13 @@ class Support:
         Curvature
             Of the bearing's energy, N, N m, N/m, N/rad and N m/rad.
         """
-        if isinstance(self.bearing, np.ndarray):
-            return Curvature(self.bearing @ motion, self.bearing)
-        response = respond(self.bearing, motion[None])
-        return Curvature(response.force[0], response.stiffness[0])
+        if not isinstance(self.bearing, np.ndarray):
+            return bearing_curve(self.bearing, motion)
+        force = self.bearing @ motion
+        rounding = np.finfo(float).eps * float((np.abs(self.bearing) @ np.abs(motion)).max())
+        return Curvature(
+            0.5 * float(motion @ force), force, self.bearing, float(np.abs(force).max()), rounding
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +63,8 @@ class ShaftState:
 
     Attributes
     ----------
+    energy
+        Of bearings and bent shaft, J.
     pinion : (5,)
         Motion of the pinion's middle, m and rad.
     bend : (m,)
@@ -69,15 +73,24 @@ class ShaftState:
         Motions of the inner rings against the outer ones, m and rad.
     forces : (bearings, 5)
         Loads of the shaft on its bearings, N and N m.
+    pinion_load : (5,)
+        Load of the pinion on the shaft that they balance, N and N m.
     stiffness : (5 (1 + bearings), 5 (1 + bearings))
         Tangent of the loads on pinion and seats by their motions, the bent shaft eliminated.
     """
 
+    energy: float
     pinion: Array
     bend: Array
     rings: Array
     forces: Array
+    pinion_load: Array
     stiffness: Array
+
+    @property
+    def loads(self) -> Array:
+        """Loads on pinion and seats that hold them, (1 + bearings, 5), N and N m: the energy's gradient."""
+        return np.asarray(np.concatenate([self.pinion_load[None], -self.forces]))
 
     @property
     def compliance(self) -> Array:
@@ -124,6 +137,29 @@ class RollingShaft:
         length = sum(segment.length for segment in self.segments)
         return np.tile([1.0, 1.0, 1.0, length, length], len(self.supports))
 
+    @cached_property
+    def bend_arms(self) -> Array:
+        """Largest motion of a ring by each coordinate of the bent shaft, (m,), m/J^0.5."""
+        return np.asarray(np.abs(self.bending * self.arms[:, None]).max(axis=0, initial=0.0))
+
+    def search_limits(self, size: float) -> tuple[float, float]:
+        """Return limits of a search for the balance under a load.
+
+        Parameters
+        ----------
+        size : float
+            Largest load, N, moments by their arms.
+
+        Returns
+        -------
+        float, float
+            Stiffness that the load would meet in one element, N/m, and motion, m, that nothing holds.
+        """
+        bearings = [support.bearing for support in self.supports]
+        rolling = [bearing for bearing in bearings if not isinstance(bearing, np.ndarray)]
+        tie = max((bearing.stiffness_at(max(size, 1.0)) for bearing in rolling), default=1.0)
+        return tie, ESCAPE * max((bearing.element_diameter for bearing in rolling), default=np.inf)
+
     def assemble(self, coordinates: Array, seats: Array) -> tuple[Array, list[Curvature]]:
         """Return the motions of the rings and the answers of their bearings.
 
@@ -169,29 +205,71 @@ def find_shaft_equilibrium(shaft: RollingShaft, load: Array, seats: Array | None
         If the bearings do not hold the load.
     """
     given_seats = np.zeros((len(shaft.supports), MOTIONS)) if seats is None else seats
+    length = float(shaft.arms[3])
+    scale = np.concatenate([[1.0, 1.0, 1.0, length, length], shaft.bend_arms])
+    tie, reach = shaft.search_limits(float(np.abs(load / scale[:MOTIONS]).max()))
     rows = np.concatenate([shaft.rigid, shaft.bending], axis=1)
-    bends = np.concatenate([np.zeros(MOTIONS), np.ones(shaft.bending.shape[1])])
 
     def derivatives(coordinates: Array) -> Curvature:
-        _, answers = shaft.assemble(coordinates, given_seats)
-        gradient = rows.T @ np.concatenate([answer.gradient for answer in answers]) + bends * coordinates
-        return Curvature(gradient, rows.T @ _blocks(answers) @ rows + np.diag(bends))
+        return _curve(shaft, coordinates, given_seats, rows)
 
-    length = float(shaft.arms[3])
-    columns = np.linalg.norm(shaft.bending * shaft.arms[:, None], axis=0)
-    scale = np.concatenate([[1.0, 1.0, 1.0, length, length], columns])
-    bearings = [support.bearing for support in shaft.supports]
-    rolling = [bearing for bearing in bearings if not isinstance(bearing, np.ndarray)]
-    size = max(float(np.abs(load / scale[:MOTIONS]).max()), 1.0)
-    tie = max((bearing.stiffness_at(size) for bearing in rolling), default=1.0)
-    reach = ESCAPE * max((bearing.element_diameter for bearing in rolling), default=np.inf)
-    outer = np.concatenate([load, np.zeros(columns.size)])
-    gap = max((largest_gap(bearing) for bearing in rolling), default=0.0)
-    coordinates = minimise(derivatives, np.zeros(outer.size), outer, scale, tie, reach, gap)
-    rings, answers = shaft.assemble(coordinates, given_seats)
+    outer = np.concatenate([load, np.zeros(shaft.bend_arms.size)])
+    return _state(shaft, minimise(derivatives, np.zeros(outer.size), outer, scale, tie, reach), given_seats)
+
+
+def follow_pinion(shaft: RollingShaft, pinion: Array, seats: Array, bend: Array | None = None) -> ShaftState:
+    """Find how a shaft bends where its pinion and its seats are held.
+
+    The energy that remains is convex in the motions of pinion and seats. `ShaftState.loads` is its gradient,
+    `ShaftState.stiffness` its second derivative: one element for the statics of a machine.
+
+    Parameters
+    ----------
+    shaft : RollingShaft
+        The shaft.
+    pinion : (5,) array
+        Motion of the pinion's middle, m and rad.
+    seats : (bearings, 5) array
+        Motions of the seats, m and rad.
+    bend : (m,) array, optional
+        Coordinates of the bent shaft at which the search begins, J^0.5; 0 by default.
+
+    Returns
+    -------
+    ShaftState
+        Balance of shaft and bearings.
+    """
+    begin = np.zeros(shaft.bend_arms.size) if bend is None else bend
+
+    def derivatives(coordinates: Array) -> Curvature:
+        return _curve(shaft, np.concatenate([pinion, coordinates]), seats, shaft.bending)
+
+    tie, _ = shaft.search_limits(1.0)
+    no_load = np.zeros(begin.size)
+    bend = minimise(derivatives, begin, no_load, shaft.bend_arms, tie, np.inf) if begin.size else no_load
+    return _state(shaft, np.concatenate([pinion, bend]), seats)
+
+
+def _curve(shaft: RollingShaft, coordinates: Array, seats: Array, rows: Array) -> Curvature:
+    """Return the energy of shaft and bearings, and its derivatives by coordinates that move rings by rows."""
+    _, answers = shaft.assemble(coordinates, seats)
+    bend, count = coordinates[MOTIONS:], rows.shape[1]
+    gradient = rows.T @ np.concatenate([answer.gradient for answer in answers])
+    matrix = rows.T @ _blocks(answers) @ rows
+    gradient[count - bend.size :] += bend
+    matrix[count - bend.size :, count - bend.size :] += np.eye(bend.size)
+    energy = 0.5 * float(bend @ bend) + sum(answer.energy for answer in answers)
+    size = max(answer.size for answer in answers)
+    return Curvature(energy, gradient, matrix, size, max(answer.rounding for answer in answers))
+
+
+def _state(shaft: RollingShaft, coordinates: Array, seats: Array) -> ShaftState:
+    rings, answers = shaft.assemble(coordinates, seats)
+    pinion, bend = coordinates[:MOTIONS], coordinates[MOTIONS:]
     forces = np.array([answer.gradient for answer in answers])
+    energy = 0.5 * float(bend @ bend) + sum(answer.energy for answer in answers)
     stiffness = _condense(shaft, _blocks(answers))
-    return ShaftState(coordinates[:MOTIONS], coordinates[MOTIONS:], rings, forces, stiffness)
+    return ShaftState(energy, pinion, bend, rings, forces, shaft.rigid.T @ forces.ravel(), stiffness)
 
 
 def _blocks(answers: Sequence[Curvature]) -> Array:

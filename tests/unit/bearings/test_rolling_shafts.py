@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rolling_bearings import P1, P2, P3, TAPERED
+from scipy.optimize import root
 
 from facegear.bearings.life import reference_life
-from facegear.bearings.response import element_loads
-from facegear.bearings.shaft import RollingShaft, Support, find_shaft_equilibrium
+from facegear.bearings.response import element_loads, respond
+from facegear.bearings.shaft import RollingShaft, Support, find_shaft_equilibrium, follow_pinion
 from facegear.errors import NotConverged
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.rigid_body import carry_motion
@@ -170,3 +171,98 @@ def test_a_softer_shaft_tilts_its_rings_more_and_carries_the_same():
     state = find_shaft_equilibrium(soft, LOAD_1)
     assert_balanced(soft, state, LOAD_1)
     assert np.abs(state.rings[:, 3:]).max() > np.abs(stiff.rings[:, 3:]).max()
+
+
+def make_random_shaft(seed):
+    """A shaft of three segments on two to four bearings of any kind."""
+    chance = np.random.default_rng(seed)
+    segments = tuple(
+        Segment(*pair)
+        for pair in zip(chance.uniform(0.02, 0.08, 3), chance.uniform(0.03, 0.06, 3), strict=True)
+    )
+    length = sum(segment.length for segment in segments)
+    kinds = [
+        P1,
+        P2,
+        replace(P2, direction=-1),
+        P3,
+        TAPERED,
+        replace(TAPERED, direction=-1),
+        replace(P1, speed=800.0),
+    ]
+    chosen = [P1, *chance.choice(np.array(kinds, object), chance.integers(1, 4))]
+    supports = [
+        Support(at, replace(bearing, first_element=turn), chance.uniform(-3e-6, 3e-6) * THRUST)
+        for at, bearing, turn in zip(
+            chance.uniform(0.0, length, len(chosen)),
+            chosen,
+            chance.uniform(0.0, 6.0, len(chosen)),
+            strict=True,
+        )
+    ]
+    return RollingShaft(segments, STEEL, tuple(supports), float(chance.uniform(0.0, length))), chance
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_scipy_finds_the_same_balance_of_random_shafts(seed):
+    """Motions of all rings are unknowns of their own there, and the shaft a stiffness."""
+    shaft, chance = make_random_shaft(seed)
+    load = chance.normal(size=5) * [2e3, 2e3, 5e2, 20.0, 20.0]
+    state = find_shaft_equilibrium(shaft, load)
+    assert_balanced(shaft, state, load)
+    count, bends = len(shaft.supports), shaft.bending.shape[1]
+    scale = np.concatenate([[1e-5] * 3, [1e-4] * 2, 1e-5 / shaft.bend_arms])
+
+    def out_of_balance(scaled):
+        coordinates = scaled * scale
+        rings = shaft.rigid @ coordinates[:5] + shaft.bending @ coordinates[5:]
+        rings = rings.reshape(count, 5) + [support.offset for support in shaft.supports]
+        forces = np.concatenate(
+            [
+                respond(one.bearing, ring[None]).force[0]
+                for one, ring in zip(shaft.supports, rings, strict=True)
+            ]
+        )
+        bent = coordinates[5:] + shaft.bending.T @ forces
+        return np.concatenate([shaft.rigid.T @ forces - load, bent]) * scale
+
+    found = root(
+        out_of_balance,
+        np.concatenate([state.pinion, state.bend]) / scale + 1e-3 * chance.normal(size=5 + bends),
+        tol=1e-14,
+    )
+    assert np.abs((found.x * scale)[:5] - state.pinion).max() < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_held_pinion_feels_the_gradient_of_the_energy_and_its_tangent(seed):
+    shaft, chance = make_random_shaft(seed)
+    balance = find_shaft_equilibrium(shaft, chance.normal(size=5) * [3e3, 3e3, 5e2, 20.0, 20.0])
+    count = len(shaft.supports)
+    seats = chance.uniform(-1.0, 1.0, (count, 5)) * 1e-7
+    here = follow_pinion(shaft, balance.pinion, seats)
+    assert np.allclose(
+        follow_pinion(shaft, balance.pinion, seats, here.bend + 1e-3).loads, here.loads, rtol=1e-8, atol=1e-6
+    )
+    step = 1e-9
+    for number in range(5 * (1 + count)):
+        states = []
+        for sign in (1.0, -1.0):
+            moved = np.concatenate([balance.pinion, seats.ravel()])
+            moved[number] += sign * step
+            states.append(follow_pinion(shaft, moved[:5], moved[5:].reshape(count, 5), here.bend))
+        slope = (states[0].energy - states[1].energy) / (2 * step)
+        assert slope == pytest.approx(
+            here.loads.ravel()[number], rel=1e-5, abs=1e-3 * (1.0 + np.abs(here.loads).max() * 1e-3)
+        )
+        column = (states[0].loads - states[1].loads).ravel() / (2 * step)
+        largest = np.abs(here.stiffness[:, number]).max()
+        assert np.allclose(column, here.stiffness[:, number], rtol=0, atol=2e-3 * largest)
+
+
+def test_an_equilibrium_is_the_held_pinion_that_feels_its_load():
+    state = find_shaft_equilibrium(S1, LOAD_1)
+    held = follow_pinion(S1, state.pinion, np.zeros((2, 5)))
+    assert np.allclose(held.pinion_load, LOAD_1, rtol=0, atol=1e-6)
+    assert np.allclose(held.stiffness, state.stiffness, rtol=1e-6)
+    assert held.energy == pytest.approx(state.energy, rel=1e-9)
