@@ -117,7 +117,8 @@ def minimise(
             return motion
         spring = part * max(tie, LAST_TIE * float(np.abs(matrix).max())) * np.eye(error.size)
         step = np.linalg.solve(matrix + spring, -error) / scale
-        motion, curve = _search_line(derivatives, motion, step, load, error @ (step * scale), reach / scale)
+        slope = float(error @ (step * scale))
+        motion, curve = _search_line(derivatives, motion, step, load, slope, reach / scale)
         part = max(TIE_FALL * part, LAST_TIE)
     worst = float(np.abs(error).max() / force)
     raise NotConverged("equilibrium of bearings", f"{worst:.1e} of the load", f"{STEPS} Newton steps")

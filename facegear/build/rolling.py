@@ -29,25 +29,28 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
         SI units.
     """
     common = {
-        "elements": section.elements,
         "element_diameter": 1e-3 * section.element_diameter_mm,
         "pitch_diameter": 1e-3 * section.pitch_diameter_mm,
         "contact_angle": radians(section.contact_angle_deg or 0.0),
-        "direction": -1 if section.loaded_by == "-z" else 1,
         "clearance": 1e-6 * section.clearance_diametral_um,
         "first_element": radians(section.first_element_deg),
         "speed": speed,
     }
+    direction = -1 if section.loaded_by == "-z" else 1
     if section.type in BALLS:
         return BallBearing(
-            **common,
+            section.elements,
+            direction=direction,
             groove_ratio_inner=section.groove_ratio_inner or GROOVE_RATIO,
             groove_ratio_outer=section.groove_ratio_outer or GROOVE_RATIO,
+            **common,
         )
     assert section.effective_length_mm is not None
     return RollerBearing(
-        **common,
+        section.elements,
+        direction=direction,
         effective_length=1e-3 * section.effective_length_mm,
         slices=section.slices or SLICES,
         has_profile=section.profile != "straight",
+        **common,
     )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from rolling_bearings import ALL, P1, P2, P3, TAPERED, public_cases
 from scipy.optimize import linprog, minimize
@@ -90,6 +90,7 @@ def test_the_hardest_element_carries_stribecks_share(bearing, count, factor):
     assert state.hardest_load * count / load[0] == pytest.approx(factor, rel=1e-4)
 
 
+@settings(deadline=None)
 @given(st.sampled_from(["P1", "P3", "thrown P1", "thrown P3"]), directions, sizes, clearances)
 def test_bearings_that_take_every_load_find_a_balance(name, direction, size, clearance):
     bearing = replace(ALL[name], clearance=clearance)
@@ -99,6 +100,7 @@ def test_bearings_that_take_every_load_find_a_balance(name, direction, size, cle
     assert_balanced(find_equilibrium(bearing, load), load)
 
 
+@settings(deadline=None)
 @given(directions, sizes, st.sampled_from([0.0, 10e-6]))
 def test_a_tapered_bearing_holds_a_load_exactly_where_its_normals_can(direction, size, clearance):
     """A load is held if it is a sum of pushes of the slices (Farkas); near the border nothing is asked."""
@@ -148,6 +150,7 @@ def test_scipys_minimum_of_the_energy_is_the_same_motion(name):
     assert np.abs((found.x * scale - motion) * ARMS)[counts].max() < 1e-9
 
 
+@settings(deadline=None)
 @given(st.sampled_from(["P1", "P3"]), directions, sizes, st.floats(-3.0, 3.0))
 def test_turning_load_and_cage_together_turns_the_motion(name, direction, size, angle):
     bearing = ALL[name]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from rolling_bearings import ALL, P1, P2, P3, TAPERED, SlowBearing, public_cases
 
@@ -58,6 +58,7 @@ def test_the_zone_of_a_radial_load_is_that_of_its_closed_form():
         assert load_zone(bearing, np.array([x, 0.0, 0.0, 0.0, 0.0])) == pytest.approx(expected, abs=1e-6)
 
 
+@settings(deadline=None)
 @given(bearings, motions)
 def test_force_is_the_gradient_of_the_energy_and_stiffness_that_of_the_force(name, motion):
     """Central differences of the fourth order; elements that only just touch are left out."""
@@ -79,6 +80,7 @@ def test_force_is_the_gradient_of_the_energy_and_stiffness_that_of_the_force(nam
     assert np.allclose(turned / np.outer(SCALE, SCALE), scaled, rtol=0, atol=2e-6 * np.abs(scaled).max())
 
 
+@settings(deadline=None)
 @given(bearings, motions)
 def test_stiffness_is_symmetric_and_never_negative(name, motion):
     stiffness = respond(ALL[name], motion[None]).stiffness[0] / np.outer(SCALE, SCALE)
@@ -87,6 +89,7 @@ def test_stiffness_is_symmetric_and_never_negative(name, motion):
     assert np.linalg.eigvalsh(stiffness).min() >= -1e-12 * largest
 
 
+@settings(deadline=None)
 @given(st.sampled_from(["P1", "P2", "P3", "tapered", "mirrored"]), motions)
 def test_a_second_program_gives_the_same_energy_and_force(name, motion):
     slow, fast = SlowBearing(ALL[name]), respond(ALL[name], motion[None])
@@ -128,6 +131,7 @@ def test_an_element_that_leaves_the_inner_ring_presses_the_outer_one_by_its_forc
     assert not response.force.any() and abs(response.energy[0]) < 1e-12
 
 
+@settings(deadline=None)
 @given(bearings, motions, st.floats(-4.0, 4.0))
 def test_turning_motion_and_cage_together_turns_the_force(name, motion, angle):
     bearing = ALL[name]
@@ -141,6 +145,7 @@ def test_turning_motion_and_cage_together_turns_the_force(name, motion, angle):
     assert there.energy[0] == pytest.approx(here.energy[0], rel=1e-9, abs=1e-13)
 
 
+@settings(deadline=None)
 @given(bearings, motions)
 def test_mirroring_z_mirrors_thrust(name, motion):
     """In the mirror z and tilts change sign."""

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from rolling_bearings import P1, P2, P3, TAPERED
 from scipy.optimize import root
@@ -75,6 +75,7 @@ def test_a_preloaded_pair_of_angular_contact_bearings_has_its_public_numbers():
     assert np.allclose(lives, [139083.0, 3673.49], rtol=4e-6)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_bearings_that_are_matrices_give_the_condensed_shaft(seed):
     chance = np.random.default_rng(seed)
@@ -125,6 +126,7 @@ def test_seats_that_move_as_one_body_carry_the_shaft_along():
     assert np.allclose(moved.forces, rest.forces, rtol=1e-7, atol=1e-5)
 
 
+@settings(deadline=None)
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(0.0, 4.0))
 def test_every_load_on_a_preloaded_pair_is_in_balance(x, y, z, exponent):
     shaft, load = make_pair(), np.array([x, y, z, 0.0, 0.0]) * 10.0**exponent
