@@ -267,6 +267,8 @@ def bearing_curve(bearing: AnyBearing, motion: Array) -> Curvature:
     force, stiffness = response.force[0], response.stiffness[0]
     length = max(largest_gap(bearing), float(np.abs(motion * scale).max()))
     largest = float(np.abs(stiffness / np.outer(scale, scale)).max())
+    # Centrifugal force stiffens the outer contacts, by which positions of the elements are rounded.
+    largest = max(largest, bearing.elements * bearing.stiffness_at(bearing.springs.centrifugal))
     rounding = ROUNDINGS * np.finfo(float).eps * largest * length
     return Curvature(
         float(response.energy[0]), force, stiffness, float(np.abs(force / scale).max()), rounding

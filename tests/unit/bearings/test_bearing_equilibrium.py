@@ -100,6 +100,14 @@ def test_bearings_that_take_every_load_find_a_balance(name, direction, size, cle
     assert_balanced(find_equilibrium(bearing, load), load)
 
 
+def test_a_light_load_beside_a_small_centrifugal_force_finds_its_balance():
+    """A load of 3 mN, and 7 mN on each ball: positions of balls are known to their rounding alone."""
+    bearing = replace(P1, clearance=1e-4, first_element=4.317079066407471, speed=12.136970140093961)
+    load = np.array([-1.39342501e-03, 2.37099782e-03, 0.0, 4.71582980e-05, -3.89728390e-05])
+    state = find_equilibrium(bearing, load)
+    assert np.abs((state.force - load) / ARMS).max() < 1e-9 * np.abs(load).max()
+
+
 @settings(deadline=None)
 @given(directions, sizes, st.sampled_from([0.0, 10e-6]))
 def test_a_tapered_bearing_holds_a_load_exactly_where_its_normals_can(direction, size, clearance):
