@@ -17,6 +17,8 @@ constexpr int MAX_STEPS = 2000, MAX_HALVINGS = 60;
 constexpr double ROUNDINGS = 4.0 * std::numeric_limits<double>::epsilon();
 // Spring to ground over the softest contact: steps lose no more than this part of their length.
 constexpr double TIE = 1e-3;
+// Determinant over the product of the diagonal from which two directions count as one.
+constexpr double FLAT = 1e-9;
 // Slope at the end of a step, over that at its beginning, from which the step is shortened.
 constexpr double STEEP = 0.1;
 
@@ -75,13 +77,19 @@ inline bool settle(const Energy& energy, Position& position) {
 // Stiffness of both contacts in a row once the element follows, H_e (H_i + H_e)^-1 H_i: the Schur complement
 // of the inner one, without the difference of large numbers.
 inline void put_in_series(const Derivatives& inner, const Derivatives& outer, Derivatives& result) {
-    const double sum[3] = {inner.first_first + outer.first_first, inner.first_second + outer.first_second,
-                           inner.second_second + outer.second_second};
-    const double determinant = sum[0] * sum[2] - sum[1] * sum[1];
-    if (inner.first_first + inner.second_second == 0.0 || determinant <= 0.0) {
+    double sum[3] = {inner.first_first + outer.first_first, inner.first_second + outer.first_second,
+                     inner.second_second + outer.second_second};
+    if (inner.first_first + inner.second_second == 0.0 || outer.first_first + outer.second_second == 0.0) {
         result.first_first = result.first_second = result.second_second = 0.0;
         return;
     }
+    // A roller that one slice alone holds is free to tilt about it: its two stiffnesses have one direction.
+    if (sum[2] == 0.0) sum[2] = sum[0]; // by the slice in its middle, against which nothing tilts
+    if (sum[0] * sum[2] - sum[1] * sum[1] < FLAT * sum[0] * sum[2]) {
+        sum[0] *= 1.0 + FLAT;
+        sum[2] *= 1.0 + FLAT;
+    }
+    const double determinant = sum[0] * sum[2] - sum[1] * sum[1];
     // Columns of (H_i + H_e)^-1 H_i.
     const double a = (sum[2] * inner.first_first - sum[1] * inner.first_second) / determinant;
     const double b = (sum[0] * inner.first_second - sum[1] * inner.first_first) / determinant;

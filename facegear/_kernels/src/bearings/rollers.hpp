@@ -88,8 +88,9 @@ struct ThrownRoller {
                 i.second_second + e.second_second};
     }
     double arm() const { return std::fabs(bearing.positions[bearing.positions.size - 1]); }
-    // Of the outer contact under the centrifugal force alone.
-    double softest() const { return bearing.centrifugal / bearing.free_position; }
+    // By which the force alone would move the roller as far as the rings are apart: one slice that holds a
+    // roller leaves it free to tilt.
+    double softest() const { return bearing.centrifugal / size({bearing.free_position, 0.0}); }
     double size(Position roller) const {
         return std::fabs(roller.first) + std::fabs(ring.first) + bearing.drops[0] +
                arm() * (std::fabs(roller.second) + std::fabs(ring.second));
