@@ -43,7 +43,7 @@ docs: tools
 ci: lint docs sanitize release .venv/cluster
 	FACEGEAR_SLURM=1 $(MAKE) test
 sanitize: tools # tests of the kernels while addresses and undefined behaviour are watched
-	$(BIN)/python building/sanitize.py -n 0 tests/unit/test_flank_and_small_kernels.py tests/unit/contact/test_contact_kernels.py tests/unit/motion/test_motion_kernels.py tests/unit/test_kernels_fuzz.py
+	$(BIN)/python building/sanitize.py -n 0 tests/unit/test_flank_and_small_kernels.py tests/unit/bearings/test_rolling_response.py tests/unit/contact/test_contact_kernels.py tests/unit/motion/test_motion_kernels.py tests/unit/test_kernels_fuzz.py
 release: tools # into dist/; the wheel is compiled by zig for an old glibc
 	$(LOCKED) requirements-zig.lock
 	PATH=$(CURDIR)/$(BIN):$$PATH .ci/release dist

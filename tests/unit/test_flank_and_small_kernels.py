@@ -1,4 +1,4 @@
-"""Bindings of the kernels of flanks, statics, samples and strength refuse what does not fit, never crash."""
+"""Bindings of the small kernels, from flanks to bearings, refuse what does not fit, and never crash."""
 
 from types import SimpleNamespace
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear._kernels import flanks, samples, statics, strength
+from facegear._kernels import bearings, flanks, samples, statics, strength
 from facegear.machine.block_statics import Springs
 from facegear.meshing.law import LinearHeld, LoadDependentHeld
 
@@ -142,6 +142,37 @@ def make_passage():
     }
 
 
+def make_bearing(*numbers, **arrays):
+    """Four elements, every number 1."""
+    turn = np.arange(4.0)
+    return SimpleNamespace(cosine=np.cos(turn), sine=np.sin(turn), **arrays, **dict.fromkeys(numbers, 1.0))
+
+
+def make_balls():
+    lengths = ("arm", "height", "rest_radial", "rest_axial", "inner_length", "outer_length")
+    springs = ("inner_stiffness", "outer_stiffness", "stiffness", "centrifugal", "free_energy")
+    return make_bearing(*lengths, *springs)
+
+
+def make_rollers():
+    lengths = ("radius", "normal_radial", "normal_axial", "direction", "clearance", "stiffness")
+    slices = {"positions": np.array([-1.0, 0.0, 1.0]), "drops": np.array([1.0, 0.0, 1.0])}
+    return make_bearing(*lengths, "centrifugal", "free_position", "free_energy", **slices)
+
+
+def make_response(bearing):
+    written = {"energy": np.zeros(2), "force": np.zeros((2, 5)), "stiffness": np.zeros((2, 5, 5))}
+    return {"bearing": bearing, "motion": np.ones((2, 5)), **written}
+
+
+def make_ball_loads():
+    return {"bearing": make_balls(), "motion": np.ones((2, 5)), "loads": np.zeros((2, 4, 4))}
+
+
+def make_roller_loads():
+    return {"bearing": make_rollers(), "motion": np.ones((2, 5)), "loads": np.zeros((2, 4, 3, 2))}
+
+
 CASES = {
     "cut_rays": (flanks.cut_rays, make_rays),
     "place": (flanks.place, make_placement),
@@ -153,8 +184,22 @@ CASES = {
     "evaluate": (samples.evaluate, make_cubics),
     "tally": (samples.tally, make_tally),
     "superpose": (strength.superpose, make_passage),
+    "respond_balls": (bearings.respond_balls, lambda: make_response(make_balls())),
+    "respond_rollers": (bearings.respond_rollers, lambda: make_response(make_rollers())),
+    "write_ball_loads": (bearings.write_ball_loads, make_ball_loads),
+    "write_roller_loads": (bearings.write_roller_loads, make_roller_loads),
 }
-WRITTEN = ("found", "part", "displacements", "residuals", "deflections", "loads", "values", "stress")
+WRITTEN = (
+    "found",
+    "part",
+    "displacements",
+    "residuals",
+    "deflections",
+    "loads",
+    "values",
+    "stress",
+    "energy",
+)
 
 
 def arrays_of(arguments):

@@ -31,14 +31,15 @@ MAY_IMPORT = {
     "sparse": set(),
     "contact": {"teeth", "meshing", "sparse"},
     "parts": {"teeth", "sparse", "contact"},
+    "bearings": {"parts"},
     "machine": {"teeth", "meshing", "parts"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
     "strength": {"teeth", "contact", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
-        *("schema", "teeth", "meshing", "contact", "parts", "machine", "motion", "sharing", "strength"),
-        "lubrication",
+        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion", "sharing"),
+        *("strength", "lubrication"),
     },
     "exchange": {"schema", "build", "teeth", "meshing", "machine", "motion"},
     "studies": {

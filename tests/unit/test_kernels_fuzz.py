@@ -9,6 +9,7 @@ ROOT = Path(__file__).parents[2]
 RECORDED = (
     "tests/unit/test_kernel_vectors.py",
     "tests/unit/test_flank_and_small_kernels.py",
+    "tests/unit/bearings/test_rolling_response.py",
     "tests/unit/contact/test_contact_kernels.py",
     "tests/unit/contact/test_contact_solver.py",
     "tests/unit/contact/test_contact_candidates.py",

@@ -14,6 +14,7 @@ NB_MODULE(KERNELS_MODULE, module) {
     facegear::bind_samples(module.def_submodule("samples"));
     facegear::bind_statics(module.def_submodule("statics"));
     facegear::bind_strength(module.def_submodule("strength"));
+    facegear::bind_bearings(module.def_submodule("bearings"));
     facegear::bind_contact(module.def_submodule("contact"));
     facegear::bind_motion(module.def_submodule("motion"));
 }

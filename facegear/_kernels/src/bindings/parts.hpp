@@ -11,6 +11,7 @@ void bind_flanks(nanobind::module_ module);
 void bind_samples(nanobind::module_ module);
 void bind_statics(nanobind::module_ module);
 void bind_strength(nanobind::module_ module);
+void bind_bearings(nanobind::module_ module);
 void bind_contact(nanobind::module_ module);
 void bind_motion(nanobind::module_ module);
 

@@ -1,0 +1,1 @@
+"""Rolling bearings: contacts of their elements, equilibrium and life."""
