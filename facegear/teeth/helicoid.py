@@ -3,7 +3,7 @@
 All points are in the pinion's body frame (x, y, z), where tooth 0 stands on the half plane x = 0, z < 0. The
 rack's tip rounding is a cylinder along the rack's tooth. Normals of its envelope are square to that
 cylinder's axis and meet the pitch line, so that they are not in a transverse section where teeth are helical
-or tapered. Sources: Litvin and Fuentes 2004, chapters 10 and 14; the envelope of the tapered rack was derived
+or tapered. Source: Litvin and Fuentes 2004, chapter 10; the envelope of the tapered rack was derived
 for this project.
 """
 

@@ -9,7 +9,7 @@ this is the mesh frame of `design`. y is the distance along the pinion's axis fr
 
 A flank is named by its sign: +1 is the drive flank (pinion right, gear left), -1 the coast flank. The coast
 flank of a pair is no mirror image of its drive flank, but the drive flank of `mirror_image` seen in a mirror.
-Sources: Litvin and Fuentes 2004, chapters 10, 14 and 18; Mitome 1981 for tapered teeth.
+Source: Litvin and Fuentes 2004, chapters 10 and 18.
 """
 
 from dataclasses import dataclass, replace

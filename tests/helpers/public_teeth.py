@@ -4,9 +4,13 @@
 """
 
 import json
-from math import radians
+from math import radians, sin
 from pathlib import Path
 
+from facegear.arrays import Array
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.family_contact import PinionPose
+from facegear.teeth.modified_contact import Removal
 from facegear.teeth.tooth_family import Rack, ToothFamily
 
 FOLDER = Path(__file__).parents[1] / "unit" / "teeth" / "public"
@@ -23,6 +27,8 @@ PARAMETERS = {
 }
 CROWNING_UM = {"P1": (4, 8), "P2": (4, 8), "P3": (3, 6), "P4": (4, 8)}
 """Profile and lead crowning of the crowned pinions, um."""
+ERRORS = PinionPose(AssemblyErrors(60e-6, radians(0.02), -40e-6), 150e-6)
+"""Errors of assembly of the public numbers: offset, shaft angle, axial shift, and the pinion outwards."""
 
 
 def public_design(name: str) -> ToothFamily:
@@ -54,3 +60,16 @@ def public_design(name: str) -> ToothFamily:
 def public_numbers(name: str) -> dict:
     """Return the numbers of a public design."""
     return json.loads((FOLDER / f"{name}.json").read_text("utf-8"))
+
+
+def crowning(family: ToothFamily, amounts_um: tuple[float, float]) -> Removal:
+    """Return the depth (m) that profile and lead crowning take off the drive flank of the pinion."""
+    across, along = (1e-6 * amount for amount in amounts_um)
+    helicoid = family.pinion_flanks[0]
+    middle = helicoid.pitch_radius * sin(helicoid.pressure_angle)
+
+    def depth(roll: Array, y: Array) -> Array:
+        from_pitch = (roll - middle) / family.rack.normal_module
+        return across * from_pitch**2 + along * ((y - family.middle) / (family.width / 2)) ** 2
+
+    return depth

@@ -1,7 +1,7 @@
 """Flanks, fillets and limits of four public designs have the numbers that were computed outside the package.
 
-The numbers (all digits) were made with closed forms typed in twice, checked by rolled racks, by cutting and by
-classical tooth contact analysis; stated errors are 1e-9 mm, 1e-11 rad and 2e-7 mm for fillet radii.
+The numbers (all digits) were made with closed forms typed in twice, checked by rolled racks, by cutting and
+by classical tooth contact analysis; stated errors are 1e-9 mm, 1e-11 rad and 2e-7 mm for fillet radii.
 """
 
 import re
