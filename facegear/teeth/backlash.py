@@ -78,7 +78,5 @@ def gear_backlash(family: ToothFamily, pose: PinionPose | None = None) -> float 
         line = contact_line(family, side, pose)
         if line is None:
             return None
-        helicoid = line.helicoid
-        lever = helicoid.base_radius * helicoid.cosine / family.motion.ratio
-        angles.append(line.transmission_error / lever)
+        angles.append(line.transmission_error * family.motion.ratio / line.base_pitch)
     return (angles[0] - angles[1]) * family.gear_pitch_radius

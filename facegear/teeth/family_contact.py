@@ -8,21 +8,20 @@ e about the gear's axis. Derived for this project; confirmed by whole flanks tur
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, copysign, cos, hypot, isfinite, sin, sqrt
+from math import atan2, cos, isfinite, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.teeth.design import AssemblyErrors
-from facegear.teeth.generated_flank import GearFlank, flank_end, gear_flank, tip_distance
-from facegear.teeth.helicoid import pinion_start
+from facegear.teeth.generated_flank import GearFlank, gear_flank
 from facegear.teeth.tooth_family import Helicoid, RelativeMotion, ToothFamily, turn_about_axis
 
 STEPS = 60
 """Newton steps before no line counts as found."""
-CLOSE = 1e-14
-"""Newton step (rad) that ends the search."""
+CLOSE = 1e-10
+"""Newton step (rad) that ends the search: the next one, its square, is below rounding."""
 NOMINAL = AssemblyErrors()
 
 
@@ -33,28 +32,29 @@ class PinionPose:
     errors: AssemblyErrors = NOMINAL
     outwards: float = 0.0
 
-    def frame(self, family: ToothFamily) -> tuple[RelativeMotion, tuple[float, float, float]]:
+    def frame(self, nominal: RelativeMotion, middle: float) -> tuple[RelativeMotion, "Vector"]:
         """Return the motion with the pose's shaft angle, and the middle of the pinion's face.
 
         Parameters
         ----------
-        family : ToothFamily
-            Pair of gears.
+        nominal : RelativeMotion
+            Motion of the pinion at its nominal place.
+        middle : float
+            Place y of the middle of the pinion's face, m.
 
         Returns
         -------
         tuple of RelativeMotion and tuple[float, float, float]
             The motion, and the middle's place in the mesh frame, m.
         """
-        nominal, errors, w = family.motion, self.errors, self.outwards
-        posed_motion = nominal
+        errors, w, posed_motion = self.errors, self.outwards, nominal
         if errors.shaft_angle_error != 0.0:
-            angle = family.shaft_angle + errors.shaft_angle_error
+            angle = nominal.shaft_angle + errors.shaft_angle_error
             posed_motion = RelativeMotion(nominal.ratio, angle, nominal.offset)
         return posed_motion, (
-            family.offset + errors.offset,
-            family.middle * nominal.sine + w * posed_motion.sine,
-            errors.axial_shift - family.middle * nominal.cosine - w * posed_motion.cosine,
+            nominal.offset + errors.offset,
+            middle * nominal.sine + w * posed_motion.sine,
+            errors.axial_shift - middle * nominal.cosine - w * posed_motion.cosine,
         )
 
 
@@ -90,6 +90,8 @@ class ContactLine:
 
     Attributes
     ----------
+    gear, helicoid, motion, pose
+        Flanks of gear and pinion, their nominal motion, and where the pinion stands.
     psi, turn
         Slope of the normal on the gear, and turn e of the line about the gear's axis (rad).
     transmission_error
@@ -104,9 +106,10 @@ class ContactLine:
         y (m) on the pinion where the line touches its base cylinder.
     """
 
-    family: ToothFamily
+    gear: GearFlank
+    helicoid: Helicoid
+    motion: RelativeMotion
     pose: PinionPose
-    side: int
     psi: float
     turn: float
     transmission_error: float
@@ -116,20 +119,15 @@ class ContactLine:
     pinion_lead: float
     pinion_place: float
 
-    @property
-    def helicoid(self) -> Helicoid:
-        """Flank of the pinion."""
-        return self.family.pinion_flanks[0 if self.side > 0 else 1]
-
-    @property
-    def gear(self) -> GearFlank:
-        """Flank of the gear."""
-        return gear_flank(self.family, self.side)
+    @cached_property
+    def posed_frame(self) -> "tuple[RelativeMotion, Vector]":
+        """Motion with the pose's shaft angle, and the middle of the pinion's face in the mesh frame (m)."""
+        return self.pose.frame(self.motion, self.helicoid.middle)
 
     @cached_property
-    def motion(self) -> RelativeMotion:
-        """Motion of the posed pinion against the gear."""
-        return self.pose.frame(self.family)[0]
+    def base_pitch(self) -> float:
+        """Length (m) along the normal per radian of the pinion's turn."""
+        return self.helicoid.base_radius * self.helicoid.cosine
 
     def point(self, s: ArrayLike) -> Array:
         """Return points of the line.
@@ -190,9 +188,9 @@ class ContactLine:
         (...) array
             Speed of the pinion's point against the gear's, m/rad.
         """
-        points, (motion, middle) = self.point(s), self.pose.frame(self.family)
+        points, (motion, middle) = self.point(s), self.posed_frame
         pinion = np.cross(points - np.array(middle), motion.basis[1])
-        gear = np.cross(points, np.array([0.0, 0.0, self.family.motion.ratio]))
+        gear = np.cross(points, np.array([0.0, 0.0, self.motion.ratio]))
         return np.linalg.norm(pinion - gear, axis=-1)
 
     def curvatures(self, s: ArrayLike) -> tuple[Array, Array, Array]:
@@ -228,11 +226,57 @@ class ContactLine:
         long = np.take_along_axis(vectors, order[..., None, :1], -1)[..., 0]
         return large, small, np.arctan(long[..., 1] / long[..., 0])
 
+    def error_slopes(self) -> tuple[Array, Array]:
+        """Compute how the contact changes with the pose.
+
+        Returns
+        -------
+        tuple of (4,) arrays
+            Derivatives of transmission error and of `pinion_place` by offset, axial shift, error of the shaft
+            angle and the pinion's place outwards, m/m and m/rad.
+        """
+        side, eta, across = self.helicoid.side, self.helicoid.sine, self.helicoid.cosine
+        motion, middle = self.posed_frame
+        axis, up = motion.basis[1], motion.basis[2]
+        _, foot_psi, normal, normal_psi = (
+            np.array(_turn_back(self._line_parts[i : i + 3], self.turn)) for i in (0, 3, 6, 9)
+        )
+        arm = self.foot - np.array(middle)
+        foot_turn = np.array([self.foot[1], -self.foot[0], 0.0])
+        normal_turn = np.array([normal[1], -normal[0], 0.0])
+        around = np.cross(arm, normal)
+        moved_middle = np.array([[1, 0, 0], [0, 0, 1], self.pose.outwards * up, axis], float)
+        turned_axis = np.array([np.zeros(3), np.zeros(3), up, np.zeros(3)])
+        by_unknowns = np.array(
+            [
+                [normal_psi @ axis, normal_turn @ axis],
+                [
+                    -side * axis @ (np.cross(foot_psi, normal) + np.cross(arm, normal_psi)),
+                    -side * axis @ (np.cross(foot_turn, normal) + np.cross(arm, normal_turn)),
+                ],
+            ]
+        )
+        by_pose = np.stack(
+            [turned_axis @ normal, side * np.cross(moved_middle, normal) @ axis - side * turned_axis @ around]
+        )
+        psi, turn = -np.linalg.solve(by_unknowns, by_pose)
+        foot_change = np.outer(psi, foot_psi) + np.outer(turn, foot_turn) - moved_middle
+        normal_change = np.outer(psi, normal_psi) + np.outer(turn, normal_turn)
+        along = foot_change @ axis + turned_axis @ arm
+        onto_normal = foot_change @ normal + normal_change @ arm
+        error = side * np.array([normal[0], normal[2], around[0], eta])
+        error[2] += side * self.pose.outwards * np.cross(axis, normal)[0]
+        return error, (along - eta * onto_normal) / across**2
+
+    @cached_property
+    def _line_parts(self) -> tuple[float, ...]:
+        return self.gear.line_components(cos(self.psi), sin(self.psi))
+
     @cached_property
     def _radial(self) -> Array:
         """Direction (3,) from the pinion's axis to the place where the line touches its base cylinder."""
-        parts = np.array([-self.side * sin(self.pinion_slope), 0.0, -cos(self.pinion_slope)])
-        return parts @ self.motion.basis
+        parts = np.array([-self.helicoid.side * sin(self.pinion_slope), 0.0, -cos(self.pinion_slope)])
+        return parts @ self.posed_frame[0].basis
 
 
 def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None) -> ContactLine | None:
@@ -251,13 +295,37 @@ def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None)
     -------
     ContactLine, optional
         The line; None where no normal of the gear touches the pinion's base cylinder, and where teeth touch
-        along lines (as many teeth of the shaper as of the pinion).
+        along lines (as many teeth of the shaper as of the pinion) that an error turns into an edge.
     """
-    if family.shaper_teeth <= family.pinion_teeth:
+    helicoid = family.pinion_flanks[0 if side > 0 else 1]
+    return find_line(gear_flank(family, side), helicoid, family.motion, pose or PinionPose())
+
+
+def find_line(
+    flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose
+) -> ContactLine | None:
+    """Compute the unloaded contact of flanks of gear and pinion, continued beyond their edges, in a pose.
+
+    Parameters
+    ----------
+    flank : GearFlank
+        Flank of the gear.
+    helicoid : Helicoid
+        Flank of the pinion.
+    nominal : RelativeMotion
+        Motion of the pinion at its nominal place.
+    pose : PinionPose
+        Where the pinion stands.
+
+    Returns
+    -------
+    ContactLine, optional
+        The line; None as `contact_line` says.
+    """
+    if flank.lift <= 0.0 and pose.errors != NOMINAL:
         return None
-    pose = pose or PinionPose()
-    helicoid, flank = family.pinion_flanks[0 if side > 0 else 1], gear_flank(family, side)
-    motion, middle = pose.frame(family)
+    side = helicoid.side
+    motion, middle = pose.frame(nominal, helicoid.middle)
     axis = (0.0, motion.sine, -motion.cosine)
     psi, turn = helicoid.pressure_angle, 0.0
     if pose.errors != NOMINAL:
@@ -274,20 +342,21 @@ def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None)
     rolled_angle = (roll + helicoid.lead * along) / helicoid.base_radius
     pinion_angle = side * (rolled_angle - slope - helicoid.phase)
     gear_angle = float(flank.turn(psi, 0.0, parts[12])) + turn
-    angle = gear_angle - pinion_angle * family.motion.ratio
+    angle = gear_angle - pinion_angle * nominal.ratio
     lead = roll / helicoid.cosine
     return ContactLine(
-        family=family,
+        gear=flank,
+        helicoid=helicoid,
+        motion=nominal,
         pose=pose,
-        side=side,
         psi=psi,
         turn=turn,
-        transmission_error=angle / family.motion.ratio * helicoid.base_radius * helicoid.cosine,
+        transmission_error=angle / nominal.ratio * helicoid.base_radius * helicoid.cosine,
         foot=np.array(foot),
         normal=np.array(normal),
         pinion_slope=slope,
         pinion_lead=lead,
-        pinion_place=along + family.middle - helicoid.sine * lead,
+        pinion_place=along + helicoid.middle - helicoid.sine * lead,
     )
 
 
@@ -342,108 +411,3 @@ def _triple(first: Vector, second: Vector, third: Vector) -> float:
         + first[1] * (second[2] * third[0] - second[0] * third[2])
         + first[2] * (second[0] * third[1] - second[1] * third[0])
     )
-
-
-@dataclass(frozen=True)
-class ContactPath:
-    """Part of a contact line inside both flanks and both faces.
-
-    first, last: ends s along the normal (m), from the gear's tip to its root. first_edge, last_edge: which
-    edge ends it there.
-    """
-
-    line: ContactLine
-    first: float
-    last: float
-    first_edge: str
-    last_edge: str
-
-    @property
-    def contact_ratio(self) -> float:
-        """Length over the base pitch; negative where no part of the line lies on both flanks."""
-        helicoid = self.line.helicoid
-        pitch = 2 * np.pi * helicoid.base_radius * helicoid.cosine / self.line.family.pinion_teeth
-        return (self.last - self.first) / pitch
-
-    @property
-    def middle(self) -> float:
-        """Mean of both ends, m."""
-        return (self.first + self.last) / 2
-
-
-def contact_path(line: ContactLine) -> ContactPath:
-    """Cut a contact line with the edges of both flanks.
-
-    Parameters
-    ----------
-    line : ContactLine
-        The line of a pose.
-
-    Returns
-    -------
-    ContactPath
-        Its part on both flanks.
-    """
-    family, helicoid, lead = line.family, line.helicoid, line.pinion_lead
-    foot_y, taper = line.pinion_place, family.taper
-    tip_radius = family.pinion_tip_radius + (foot_y - family.middle) * taper
-    start = float(pinion_start(family, line.side, foot_y))
-    growth = helicoid.cosine - taper * helicoid.sine / sin(helicoid.pressure_angle)
-    lower = [
-        (_tip_crossing(line), "gear tip"),
-        (0.0, "start of the gear's involute"),
-        (max(start / growth, 0.0) - lead, "pinion root"),
-    ]
-    upper = [
-        (float(flank_end(family, line.side, line.psi)), "gear root"),
-        (float(tip_distance(helicoid, tip_radius, taper)) - lead, "pinion tip"),
-    ]
-    if helicoid.sine != 0.0:
-        half = copysign(family.width / 2, helicoid.sine)
-        names = ("pinion inner end", "pinion outer end")[:: 1 if half > 0 else -1]
-        ends = ((family.middle + at - foot_y) / helicoid.sine - lead for at in (-half, half))
-        lower.append((next(ends), names[0]))
-        upper.append((next(ends), names[1]))
-    elif abs(foot_y - family.middle) > family.width / 2:
-        upper.append((-np.inf, "pinion inner end" if foot_y < family.middle else "pinion outer end"))
-    first, last = max(lower), min(upper)
-    outside = _radius_crossings(line, family.outer_radius)
-    if outside is None:
-        last = min(last, (-np.inf, "gear outer end"))
-    else:
-        first, last = max(first, (outside[0], "gear outer end")), min(last, (outside[1], "gear outer end"))
-    inside = _radius_crossings(line, family.inner_radius)
-    if inside is not None:
-        # the line dives below the inner cylinder: keep the longer of the parts on either side
-        before, after = min(last[0], inside[0]) - first[0], last[0] - max(first[0], inside[1])
-        if before >= after:
-            last = min(last, (inside[0], "gear inner end"))
-        else:
-            first = max(first, (inside[1], "gear inner end"))
-    return ContactPath(line, first[0], last[0], first[1], last[1])
-
-
-def _tip_crossing(line: ContactLine) -> float:
-    """Return s (m) at which the line passes the gear's tip surface."""
-    tip, foot, normal = line.family.gear_tip, line.foot, line.normal
-    s = float(tip.height(line.family.inner_radius) - foot[2]) / normal[2]
-    for _ in range(STEPS):
-        x, y = foot[0] + s * normal[0], foot[1] + s * normal[1]
-        radius = hypot(x, y)
-        residual = foot[2] + s * normal[2] - float(tip.height(radius))
-        step = residual / (normal[2] - tip.slope * (x * normal[0] + y * normal[1]) / radius)
-        s -= step
-        if abs(step) < 1e-16:
-            break
-    return s
-
-
-def _radius_crossings(line: ContactLine, radius: float) -> tuple[float, float] | None:
-    """Return both s (m) at which the line passes a cylinder about the gear's axis, None where it does not."""
-    foot, normal = line.foot, line.normal
-    square = normal[0] ** 2 + normal[1] ** 2
-    half = (foot[0] * normal[0] + foot[1] * normal[1]) / square
-    inside = half**2 - (foot[0] ** 2 + foot[1] ** 2 - radius**2) / square
-    if inside <= 0.0:
-        return None
-    return -half - sqrt(inside), -half + sqrt(inside)

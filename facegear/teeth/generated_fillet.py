@@ -319,7 +319,7 @@ class GearFillet:
             roll = np.sqrt(centre**2 - self.shaper.base_radius**2)
         return roll, centre * self.taper / roll
 
-    def _components(self, normal: ArrayLike, square: ArrayLike, along: ArrayLike, psi: Array) -> Array:
+    def _components(self, normal: Array, square: Array | float, along: Array, psi: Array) -> Array:
         """Return vectors from components along the normal's section, square to it, and along the axis."""
         cp, sp, side = np.cos(psi), np.sin(psi), self.shaper.side
         x, u = side * (normal * cp - square * sp), -(normal * sp + square * cp)

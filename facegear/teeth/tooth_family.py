@@ -175,7 +175,7 @@ class ToothFamily:
 
     Radial lengths (addenda, dedendum, shift, roundings' places) lie in transverse sections. middle: y of the
     middle of the pinion's face. thinning: normal thickness taken off the pinion's tooth, half from either
-    flank.
+    flank. pinion_tip_chamfer: by how much the pinion's flanks end below its tip.
     """
 
     rack: Rack
@@ -196,6 +196,7 @@ class ToothFamily:
     thinning: float = 0.0
     rack_tip_radius: float = 0.0
     shaper_tip_rounding: float = 0.0
+    pinion_tip_chamfer: float = 0.0
 
     @cached_property
     def motion(self) -> RelativeMotion:
@@ -236,6 +237,11 @@ class ToothFamily:
     def pinion_tip_radius(self) -> float:
         """Tip radius of the pinion in the middle of its face, m."""
         return self.pinion_pitch_radius + self.profile_shift + self.pinion_addendum
+
+    @cached_property
+    def pinion_flank_radius(self) -> float:
+        """Radius at which the pinion's flanks end, in the middle of its face, m."""
+        return self.pinion_tip_radius - self.pinion_tip_chamfer
 
     @cached_property
     def shaper_tip_radius(self) -> float:

@@ -8,9 +8,9 @@ from math import radians, sin
 from pathlib import Path
 
 from facegear.arrays import Array
+from facegear.teeth.bounded_contact import Removal
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.family_contact import PinionPose
-from facegear.teeth.modified_contact import Removal
 from facegear.teeth.tooth_family import Rack, ToothFamily
 
 FOLDER = Path(__file__).parents[1] / "unit" / "teeth" / "public"

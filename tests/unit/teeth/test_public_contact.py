@@ -10,9 +10,9 @@ from scipy.optimize import minimize_scalar
 
 from facegear.contact.hertz import contact_ellipse, contact_modulus
 from facegear.teeth.backlash import gear_backlash
+from facegear.teeth.bounded_contact import contact_path, modified_contact
 from facegear.teeth.design import Material
-from facegear.teeth.family_contact import PinionPose, contact_line, contact_path
-from facegear.teeth.modified_contact import modified_contact
+from facegear.teeth.family_contact import PinionPose, contact_line
 
 SIDES = {"drive": 1, "coast": -1}
 CASES = pytest.mark.parametrize(("name", "side"), [(name, side) for name in NAMES for side in SIDES])
@@ -21,13 +21,13 @@ TORQUE = 500.0
 
 def nominal_path(name, side):
     """Return the path of a public design without errors."""
-    return contact_path(contact_line(public_design(name), SIDES[side]))
+    family = public_design(name)
+    return contact_path(family, contact_line(family, SIDES[side]))
 
 
 def mesh_force(path):
     """Return the mesh force (N) of the public torque on one pair."""
-    helicoid = path.line.helicoid
-    return TORQUE / (helicoid.base_radius * helicoid.cosine)
+    return TORQUE / path.line.base_pitch
 
 
 @CASES
@@ -46,7 +46,8 @@ def test_path_ends_and_edges_are_the_public_ones(name, side):
 def test_contact_ratios_are_the_public_ones(name, side):
     path, numbers = nominal_path(name, side), public_numbers(name)
     assert path.contact_ratio == pytest.approx(numbers[f"{side} contact ratio"], rel=1e-9)
-    posed = contact_path(contact_line(public_design(name), SIDES[side], ERRORS))
+    family = public_design(name)
+    posed = contact_path(family, contact_line(family, SIDES[side], ERRORS))
     assert posed.contact_ratio == pytest.approx(numbers[f"{side} with errors: contact ratio"], rel=1e-9)
 
 
@@ -84,14 +85,15 @@ def test_force_and_moment_on_the_gear_are_the_public_ones(name, side):
 
 @CASES
 def test_contact_under_errors_of_assembly_is_the_public_one(name, side):
-    line, numbers = contact_line(public_design(name), SIDES[side], ERRORS), public_numbers(name)
+    family, numbers = public_design(name), public_numbers(name)
+    line = contact_line(family, SIDES[side], ERRORS)
     error = numbers[f"{side} with errors: te along the normal um"] * 1e-6
     assert abs(line.transmission_error - error) < 1e-15
     psi, turn = numbers[f"{side} with errors: psi rad, turn e rad"]
     assert abs(line.psi - psi) < 1e-11
     assert abs(line.turn - turn) < 1e-11
     y = numbers[f"{side} with errors: middle of path on the pinion y mm"]
-    assert abs(line.pinion_y(contact_path(line).middle) - y * MM) < 1e-12
+    assert abs(line.pinion_y(contact_path(family, line).middle) - y * MM) < 1e-12
 
 
 @CASES
