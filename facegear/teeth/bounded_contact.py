@@ -28,8 +28,8 @@ STENCIL = np.array(
     [[1, 0], [-1, 0], [2, 0], [-2, 0], [0, 1], [0, -1], [0, 2], [0, -2], [1, 1], [-1, -1], [0, 0]], float
 )
 """Steps across and along the flank from which slope (to the fourth order) and curvature are taken."""
-ACROSS, ALONG = 1e-5, 5e-4
-"""Lengths (m) of these steps: both change the gap by some 1e-8 m, far above rounding."""
+ACROSS, ALONG = 0.003, 0.12
+"""Lengths of these steps in normal modules: both change the gap by some 1e-6 modules, far above rounding."""
 STEPS = 40
 CLOSE = 1e-5
 """Part of a step of the stencil that ends the search; an error of the place counts only squared."""
@@ -225,20 +225,21 @@ class _Search:
         path, reach = contact_path(self.family, line), self.family.rack.normal_module
         ends = path.first + line.pinion_lead - reach, path.last + line.pinion_lead + reach
         is_near = (from_base > ends[0]) & (from_base < ends[1])
+        across_step, along_step = ACROSS * reach, ALONG * reach
         psi = np.full(angle.shape, line.psi)
         is_done = ~is_near
         for _ in range(STEPS):
             rows = np.flatnonzero(~is_done)
             if not rows.size:
                 break
-            at_roll = roll[rows, None] + STENCIL[:, 0] * ACROSS
-            at_y = y[rows, None] + STENCIL[:, 1] * ALONG
+            at_roll = roll[rows, None] + STENCIL[:, 0] * across_step
+            at_y = y[rows, None] + STENCIL[:, 1] * along_step
             value, slopes, _ = self.error(angle[rows, None], at_roll, at_y, psi[rows, None])
             step = _newton_step(value)
             largest = np.abs(step).max(axis=1)
             step *= np.minimum(1.0, 20.0 / np.maximum(largest, 1e-300))[:, None]
-            roll[rows] += step[:, 0] * ACROSS
-            y[rows] += step[:, 1] * ALONG
+            roll[rows] += step[:, 0] * across_step
+            y[rows] += step[:, 1] * along_step
             psi[rows] = slopes[:, -1]
             is_lost = ~np.isfinite(step).all(axis=1)
             is_done[rows] = (largest < CLOSE) | is_lost

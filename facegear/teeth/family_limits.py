@@ -27,6 +27,8 @@ FLATTEST = -0.4
 """Smallest slope (rad) that is looked at: sound flanks have positive slopes, helical ones nearly so."""
 ROUNDING = 1e-15
 """Absolute tolerance of roots, m or rad."""
+POINTING_SAMPLES = 64
+"""Radii at which the tip land is looked at before pointing is refined."""
 FARTHEST = 1.6
 """Radius over the face's outer radius up to which pointing is looked for."""
 
@@ -133,7 +135,8 @@ def flank_start(family: ToothFamily, side: int) -> FlankStart:
     outside = np.flatnonzero(is_sound & (radius > family.outer_radius))
     start = near[0] if near.size else (outside[-1] if outside.size else None)
     if start is None:
-        raise GeometryError("shaper tip", side, "such that it leaves a sound flank below the gear's tip")
+        allowed_text = "such that the shaper's tip leaves a sound flank below the gear's tip"
+        raise GeometryError("shaper addendum", round(family.shaper_addendum, 9), allowed_text)
     ends = np.flatnonzero(~is_sound[start:])
     involute = _involute_start(family, side)
     if not ends.size:
@@ -241,7 +244,9 @@ def pointing_radius(family: ToothFamily, inner: float) -> float:
     float
         m; inf where the tip land does not vanish up to `FARTHEST` times the outer radius.
     """
-    radius = np.linspace(inner * (1.0 + 1e-9), max(FARTHEST * family.outer_radius, 1.01 * inner), SAMPLES)
+    radius = np.linspace(
+        inner * (1.0 + 1e-9), max(FARTHEST * family.outer_radius, 1.01 * inner), POINTING_SAMPLES
+    )
     land = tip_land(family, radius)
     without_land = np.flatnonzero(~(land > 0.0))
     if not without_land.size:

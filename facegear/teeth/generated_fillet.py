@@ -261,7 +261,7 @@ class GearFillet:
         Returns
         -------
         (..., 2) array
-            Curvatures, 1/m, hollow counted positive, in rising order.
+            Curvatures, 1/m, in rising order; inf at the corner that a sharp edge leaves.
         """
         points = self._at(y, part)
         tangents = np.stack(self._unturned_tangents(points), axis=-2)
@@ -275,10 +275,14 @@ class GearFillet:
         )
         first = tangents @ np.swapaxes(tangents, -1, -2)
         second = changes @ np.swapaxes(tangents, -1, -2)
-        shape = np.linalg.solve(first, (second + np.swapaxes(second, -1, -2)) / 2)
-        middle = np.trace(shape, axis1=-2, axis2=-1) / 2
-        apart = np.sqrt(np.maximum(middle**2 - np.linalg.det(shape), 0.0))
-        return np.stack([middle - apart, middle + apart], axis=-1)
+        cross, area = (second[..., 0, 1] + second[..., 1, 0]) / 2, np.linalg.det(first)
+        mean = first[..., 0, 0] * second[..., 1, 1] + first[..., 1, 1] * second[..., 0, 0]
+        mean = mean / 2 - first[..., 0, 1] * cross
+        bend = second[..., 0, 0] * second[..., 1, 1] - cross**2
+        apart = np.sqrt(np.maximum(mean**2 - bend * area, 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curvatures = np.stack([mean - apart, mean + apart], axis=-1) / area[..., None]
+        return np.where(np.isnan(curvatures), np.inf, curvatures)
 
     def smallest_radius(self, radius: float) -> float:
         """Compute the smallest principal radius of curvature of the fillet at a gear radius.
@@ -300,6 +304,8 @@ class GearFillet:
         parts = np.linspace(0.0, 1.0, SAMPLES)
         sharp = sharpness(parts)
         best = int(np.argmax(sharp))
+        if np.isinf(sharp[best]):
+            return 0.0
         low, high = parts[max(best - 1, 0)], parts[min(best + 1, SAMPLES - 1)]
         solution = minimize_scalar(
             lambda part: -float(sharpness(part)),

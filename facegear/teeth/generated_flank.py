@@ -34,6 +34,15 @@ LARGEST_STEP = 0.1
 """Largest step of psi (rad), well below the distance of both solutions at a place of the flank."""
 CLOSE = 1e-14
 """Step of psi (rad) that ends Newton's method: rounding of psi itself."""
+SLOPES = (-1.2, 1.5)
+"""Slopes psi (rad) between which a place is looked for; sound flanks lie well inside."""
+FLATTEST = float(np.cos(0.05))
+"""Cosine of the smallest slope from which a search starts, inside the gear's base radius."""
+FURTHER_STARTS = (-0.15, 0.2, -0.35)
+"""Shifts (rad) of the start where a search ended beyond the singular line, as it does near the inner end of
+helical flanks, whose slopes differ from those of spur teeth that it starts from."""
+ACCURATE = 1e-12
+"""Largest Newton step of psi (rad) with which a point counts as found."""
 ROUNDING = 16 * np.finfo(float).eps
 """Relative residual that counts as zero where steps cannot shrink any further, near a fold."""
 
@@ -314,26 +323,36 @@ class GearFlank:
         tuple of (...) arrays
             psi, rad, and s, m.
         """
-        shaper, motion = self.shaper, self.motion
-        pitch = shaper.base_radius / motion.ratio
-        start = np.arccos(np.clip(pitch / radius, -1.0, np.cos(0.05))) if near is None else near
-        psi = np.broadcast_to(np.asarray(start, float), radius.shape).copy()
-        is_close = np.zeros(radius.shape, bool)
+        radius, height = np.broadcast_arrays(np.asarray(radius, float), np.asarray(height, float))
+        if near is None:
+            near = np.arccos(np.clip(self.shaper.base_radius / self.motion.ratio / radius, -1.0, FLATTEST))
+        start = np.broadcast_to(np.asarray(near, float), radius.shape)
+        psi, s = self._newton(start, radius, height)
+        for shift in FURTHER_STARTS:
+            rows = np.isnan(psi)
+            if not rows.any():
+                break
+            retry_psi, retry_s = self._newton(start[rows] + shift, radius[rows], height[rows])
+            psi, s = psi.copy(), s.copy()
+            psi[rows], s[rows] = retry_psi, retry_s
+        return psi, s
+
+    def _newton(self, start: Array, radius: Array, height: Array) -> tuple[Array, Array]:
+        """Return psi and s at radii and heights by Newton's method, nan where it ends elsewhere."""
+        psi, is_close = np.asarray(start, float), np.zeros(radius.shape, bool)
         for _ in range(STEPS):
-            lines = self.lines(psi)
-            s, residual, slope = _radius_residual(lines, radius, height)
+            s, residual, slope = _radius_residual(self.lines(psi), radius, height)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = np.clip(residual / slope, -LARGEST_STEP, LARGEST_STEP)
             step = np.where(is_close | ~np.isfinite(step), 0.0, step)
             is_close = is_close | (np.abs(step) < CLOSE)
             if is_close.all():
                 break
-            psi = np.clip(psi - step, -1.2, 1.5)
-        lines = self.lines(psi)
-        s, residual, _ = _radius_residual(lines, radius, height)
-        is_found = np.abs(residual) <= ROUNDING * 4 * radius**2
-        is_sound = np.sign(self.singularity(psi, s)) == self.sound_sign
-        return np.where(is_found & is_sound, psi, np.nan), np.where(is_found & is_sound, s, np.nan)
+            psi = np.clip(psi - step, *SLOPES)
+        s, residual, slope = _radius_residual(self.lines(psi), radius, height)
+        is_found = np.abs(residual) <= np.maximum(ROUNDING * radius**2, ACCURATE * np.abs(slope))
+        is_found &= np.sign(self.singularity(psi, s)) == self.sound_sign
+        return np.where(is_found, psi, np.nan), np.where(is_found, s, np.nan)
 
     @cached_property
     def sound_sign(self) -> float:

@@ -441,7 +441,6 @@ def stack_vectors(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     (..., 3) array
         The unit of `x`.
     """
-    shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
-    vectors = np.empty((*shape, 3))
+    vectors = np.empty((*np.broadcast(x, y, z).shape, 3))
     vectors[..., 0], vectors[..., 1], vectors[..., 2] = x, y, z
     return vectors

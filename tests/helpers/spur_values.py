@@ -1,7 +1,8 @@
 """Values of spur teeth at ninety degrees: points, normals, limits, paths and fillets of the shipped configs.
 
 `python tests/helpers/spur_values.py` wrote `tests/unit/teeth/spur.npz` while spur teeth had formulas of their
-own, at the commit that added the file; they are a limit of the family since. Each array's name is that of the config, a stroke and the quantity.
+own, at the commit that added the file; they are a limit of the family since.
+Each array's name is that of the config, a stroke and the quantity.
 """
 
 from dataclasses import replace

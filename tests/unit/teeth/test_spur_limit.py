@@ -152,9 +152,7 @@ def changed(family, key, step):
         "taper": lambda: replace(family, rack=replace(rack, taper_angle=step)),
         "offset": lambda: replace(family, offset=0.005 * step),
         "shaft angle": lambda: replace(family, shaft_angle=pi / 2 + step),
-        "asymmetry": lambda: replace(
-            family, rack=replace(rack, pressure_angles=(angles[0], angles[1] + step))
-        ),
+        "asymmetry": lambda: replace(family, rack=replace(rack, pressure_angles=(angles[0], sharper))),
     }[key]()
 
 
