@@ -24,6 +24,9 @@ CLOSE = 1e-10
 """Newton step (rad) that ends the search: the next one, its square, is below rounding."""
 NOMINAL = AssemblyErrors()
 
+Vector = tuple[float, float, float]
+X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+
 
 @dataclass(frozen=True)
 class PinionPose:
@@ -32,7 +35,7 @@ class PinionPose:
     errors: AssemblyErrors = NOMINAL
     outwards: float = 0.0
 
-    def frame(self, nominal: RelativeMotion, middle: float) -> tuple[RelativeMotion, "Vector"]:
+    def frame(self, nominal: RelativeMotion, middle: float) -> tuple[RelativeMotion, Vector]:
         """Return the motion with the pose's shaft angle, and the middle of the pinion's face.
 
         Parameters
@@ -120,7 +123,7 @@ class ContactLine:
     pinion_place: float
 
     @cached_property
-    def posed_frame(self) -> "tuple[RelativeMotion, Vector]":
+    def posed_frame(self) -> tuple[RelativeMotion, Vector]:
         """Motion with the pose's shaft angle, and the middle of the pinion's face in the mesh frame (m)."""
         return self.pose.frame(self.motion, self.helicoid.middle)
 
@@ -145,7 +148,7 @@ class ContactLine:
         return self.foot + np.asarray(s, float)[..., None] * self.normal
 
     def pinion_y(self, s: ArrayLike) -> Array:
-        """Return places along the pinion's axis, counted on the pinion.
+        """Return place_slopes along the pinion's axis, counted on the pinion.
 
         Parameters
         ----------
@@ -235,42 +238,37 @@ class ContactLine:
             Derivatives of transmission error and of `pinion_place` by offset, axial shift, error of the shaft
             angle and the pinion's place outwards, m/m and m/rad.
         """
-        side, eta, across = self.helicoid.side, self.helicoid.sine, self.helicoid.cosine
+        side, eta, outwards = self.helicoid.side, self.helicoid.sine, self.pose.outwards
         motion, middle = self.posed_frame
-        axis, up = motion.basis[1], motion.basis[2]
-        _, foot_psi, normal, normal_psi = (
-            np.array(_turn_back(self._line_parts[i : i + 3], self.turn)) for i in (0, 3, 6, 9)
+        axis, up = (0.0, motion.sine, -motion.cosine), (0.0, motion.cosine, motion.sine)
+        parts = self.gear.line_components(cos(self.psi), sin(self.psi))
+        foot, foot_psi, normal, normal_psi = (_turn_back(parts[i : i + 3], self.turn) for i in (0, 3, 6, 9))
+        arm = (foot[0] - middle[0], foot[1] - middle[1], foot[2] - middle[2])
+        foot_turn, normal_turn = (foot[1], -foot[0], 0.0), (normal[1], -normal[0], 0.0)
+        first_psi, first_turn = _product(normal_psi, axis), _product(normal_turn, axis)
+        second_psi = -side * (_triple(axis, foot_psi, normal) + _triple(axis, arm, normal_psi))
+        second_turn = -side * (_triple(axis, foot_turn, normal) + _triple(axis, arm, normal_turn))
+        scale = first_psi * second_turn - first_turn * second_psi
+        tilt_change = outwards * _triple(axis, up, normal) - _triple(up, arm, normal)
+        # changes of both equations by the pose, of the place along the axis, and of that along the normal
+        changes = (
+            (0.0, _triple(axis, X, normal), 0.0, -normal[0]),
+            (0.0, _triple(axis, Z, normal), -axis[2], -normal[2]),
+            (_product(up, normal), tilt_change, _product(up, arm), -outwards * _product(up, normal)),
+            (0.0, 0.0, -1.0, -_product(axis, normal)),
         )
-        arm = self.foot - np.array(middle)
-        foot_turn = np.array([self.foot[1], -self.foot[0], 0.0])
-        normal_turn = np.array([normal[1], -normal[0], 0.0])
-        around = np.cross(arm, normal)
-        moved_middle = np.array([[1, 0, 0], [0, 0, 1], self.pose.outwards * up, axis], float)
-        turned_axis = np.array([np.zeros(3), np.zeros(3), up, np.zeros(3)])
-        by_unknowns = np.array(
-            [
-                [normal_psi @ axis, normal_turn @ axis],
-                [
-                    -side * axis @ (np.cross(foot_psi, normal) + np.cross(arm, normal_psi)),
-                    -side * axis @ (np.cross(foot_turn, normal) + np.cross(arm, normal_turn)),
-                ],
-            ]
-        )
-        by_pose = np.stack(
-            [turned_axis @ normal, side * np.cross(moved_middle, normal) @ axis - side * turned_axis @ around]
-        )
-        psi, turn = -np.linalg.solve(by_unknowns, by_pose)
-        foot_change = np.outer(psi, foot_psi) + np.outer(turn, foot_turn) - moved_middle
-        normal_change = np.outer(psi, normal_psi) + np.outer(turn, normal_turn)
-        along = foot_change @ axis + turned_axis @ arm
-        onto_normal = foot_change @ normal + normal_change @ arm
-        error = side * np.array([normal[0], normal[2], around[0], eta])
-        error[2] += side * self.pose.outwards * np.cross(axis, normal)[0]
-        return error, (along - eta * onto_normal) / across**2
-
-    @cached_property
-    def _line_parts(self) -> tuple[float, ...]:
-        return self.gear.line_components(cos(self.psi), sin(self.psi))
+        along_psi, along_turn = _product(foot_psi, axis), _product(foot_turn, axis)
+        onto_psi = _product(foot_psi, normal) + _product(normal_psi, arm)
+        onto_turn = _product(foot_turn, normal) + _product(normal_turn, arm)
+        place_slopes = []
+        for first, second, along, onto in changes:
+            psi = -(first * second_turn - first_turn * side * second) / scale
+            turn = -(first_psi * side * second - first * second_psi) / scale
+            along += psi * along_psi + turn * along_turn
+            onto += psi * onto_psi + turn * onto_turn
+            place_slopes.append((along - eta * onto) / self.helicoid.cosine**2)
+        tilt = _triple(X, arm, normal) + outwards * _triple(X, axis, normal)
+        return side * np.array([normal[0], normal[2], tilt, eta]), np.array(place_slopes)
 
     @cached_property
     def _radial(self) -> Array:
@@ -324,15 +322,42 @@ def find_line(
     """
     if flank.lift <= 0.0 and pose.errors != NOMINAL:
         return None
+    solution: tuple[float, float] | None = helicoid.pressure_angle, 0.0
+    if pose.errors != NOMINAL:
+        motion, middle = pose.frame(nominal, helicoid.middle)
+        axis = (0.0, motion.sine, -motion.cosine)
+        solution = _solve(flank, helicoid, axis, middle, helicoid.pressure_angle)
+    return None if solution is None else place_line(flank, helicoid, nominal, pose, *solution)
+
+
+def place_line(
+    flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose, psi: float, turn: float
+) -> ContactLine:
+    """Return the contact line in a pose by its slope and turn.
+
+    Parameters
+    ----------
+    flank : GearFlank
+        Flank of the gear.
+    helicoid : Helicoid
+        Flank of the pinion.
+    nominal : RelativeMotion
+        Motion of the pinion at its nominal place.
+    pose : PinionPose
+        Where the pinion stands.
+    psi : float
+        Slope of the line, rad.
+    turn : float
+        Turn of the line about the gear's axis, rad.
+
+    Returns
+    -------
+    ContactLine
+        The line.
+    """
     side = helicoid.side
     motion, middle = pose.frame(nominal, helicoid.middle)
     axis = (0.0, motion.sine, -motion.cosine)
-    psi, turn = helicoid.pressure_angle, 0.0
-    if pose.errors != NOMINAL:
-        solution = _solve(flank, helicoid, axis, middle, psi)
-        if solution is None:
-            return None
-        psi, turn = solution
     parts = flank.line_components(cos(psi), sin(psi))
     foot, normal = _turn_back(parts[0:3], turn), _turn_back(parts[6:9], turn)
     x, v, w = (foot[i] - middle[i] for i in range(3))
@@ -358,9 +383,6 @@ def find_line(
         pinion_lead=lead,
         pinion_place=along + helicoid.middle - helicoid.sine * lead,
     )
-
-
-Vector = tuple[float, float, float]
 
 
 def _solve(
