@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
 from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line
-from facegear.teeth.generated_flank import flank_end, tip_distance
-from facegear.teeth.helicoid import pinion_start
+from facegear.teeth.generated_fillet import flank_end
+from facegear.teeth.helicoid import pinion_start, tip_distance
 from facegear.teeth.tooth_family import ToothFamily
 
 Removal = Callable[[Array, Array], Array]

@@ -1,4 +1,4 @@
-"""Compute the face gear's surfaces in closed form, for single numbers as for arrays.
+"""Compute the face gear's fillet in closed form, for single numbers as for arrays.
 
 The kernels of rays hold the same formulas in C++: `facegear/_kernels/src/flanks/closed_forms.hpp`.
 Symbols as in `face_gear`; base is the shaper's base radius (m), ratio its tooth number over the gear's, space
@@ -11,41 +11,6 @@ import numpy as np
 
 Numbers = Any
 """A single number, or an array of them."""
-
-
-def flank_frame(
-    base: float, ratio: float, space: float, lift: float, roll: Numbers, psi: Numbers
-) -> tuple[Numbers, ...]:
-    """Compute the point of the flank and its derivatives.
-
-    Parameters
-    ----------
-    base : float
-        Base radius of the shaper, m.
-    ratio : float
-        Ratio m2s, dimensionless.
-    space : float
-        Half space angle of the shaper, rad.
-    lift : float
-        Distance of the axes' planes, m.
-    roll : Numbers
-        Roll angle th, rad.
-    psi : Numbers
-        Slope of the normal, rad.
-
-    Returns
-    -------
-    tuple
-        x, y, z (m), and their derivatives with respect to roll and to psi (m/rad).
-    """
-    turn = ratio * (psi - roll - space)
-    ct, st, cp, sp = np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi)
-    p, q = base * (sp - roll * cp), base / (ratio * cp)
-    p_psi, q_psi = base * (cp + roll * sp), q * sp / cp
-    x, y, z = p * ct - q * st, p * st + q * ct, lift - p_psi
-    x_roll, y_roll, z_roll = ratio * y - base * ct * cp, -ratio * x - base * st * cp, -base * sp
-    x_psi, y_psi = p_psi * ct - q_psi * st - ratio * y, p_psi * st + q_psi * ct + ratio * x
-    return x, y, z, x_roll, y_roll, z_roll, x_psi, y_psi, p
 
 
 def normal(turn: Numbers, psi: Numbers) -> tuple[Numbers, Numbers, Numbers]:
@@ -109,78 +74,3 @@ def fillet_frame(
     x_psi, y_psi = p_psi * ct - ratio * chi_psi * y, p_psi * st + ratio * chi_psi * x
     x_q, y_q = p_q * ct - st - ratio * chi_q * y, p_q * st + ct + ratio * chi_q * x
     return x, y, z, x_psi, y_psi, z_psi, x_q, y_q, z_q
-
-
-def radius_at_roll(
-    base: float, ratio: float, radius: Numbers, roll: Numbers, psi: Numbers
-) -> tuple[Numbers, Numbers]:
-    """Compute the square of the flank's radius at roll and psi less that of `radius`.
-
-    Parameters
-    ----------
-    base : float
-        Base radius of the shaper, m.
-    ratio : float
-        Ratio m2s, dimensionless.
-    radius : Numbers
-        Gear radius, m.
-    roll : Numbers
-        Roll angle th, rad.
-    psi : Numbers
-        Slope of the normal, rad.
-
-    Returns
-    -------
-    tuple
-        Difference, m2, and its derivative by psi, m2/rad.
-    """
-    p, q = base * (np.sin(psi) - roll * np.cos(psi)), base / (ratio * np.cos(psi))
-    slope = 2 * p * base * (np.cos(psi) + roll * np.sin(psi)) + 2 * q * q * np.tan(psi)
-    return p * p + q * q - radius * radius, slope
-
-
-def radius_at_height(
-    base: float, ratio: float, radius: Numbers, height: Numbers, psi: Numbers
-) -> tuple[Numbers, Numbers]:
-    """Compute the square of the flank's radius at a height and psi less that of `radius`.
-
-    Parameters
-    ----------
-    base : float
-        Base radius of the shaper, m.
-    ratio : float
-        Ratio m2s, dimensionless.
-    radius : Numbers
-        Gear radius, m.
-    height : Numbers
-        Height from the lift downwards over the base radius, dimensionless.
-    psi : Numbers
-        Slope of the normal, rad.
-
-    Returns
-    -------
-    tuple
-        Difference, m2, and its derivative by psi, m2/rad.
-    """
-    sine = np.sin(psi)
-    p, q = base * (1 - height * np.cos(psi)) / sine, base / (ratio * np.cos(psi))
-    p_psi = base * (height - np.cos(psi)) / (sine * sine)
-    return p * p + q * q - radius * radius, 2 * p * p_psi + 2 * q * q * np.tan(psi)
-
-
-def roll_at_height(height: Numbers, psi: Numbers) -> Numbers:
-    """Compute the roll angle where the flank has a height.
-
-    Parameters
-    ----------
-    height : Numbers
-        Height from the lift downwards over the base radius, dimensionless.
-    psi : Numbers
-        Slope of the normal, rad.
-
-    Returns
-    -------
-    Numbers
-        Roll angle, rad.
-    """
-    return (height - np.cos(psi)) / np.sin(psi)

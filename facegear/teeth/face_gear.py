@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.errors import NotConverged
-from facegear.teeth import closed_forms
 from facegear.teeth.design import PairDesign, as_cut
+from facegear.teeth.generated_flank import GearFlank, gear_flank
 
 ROUNDING = 16 * np.finfo(float).eps
 
@@ -62,7 +62,7 @@ def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     (..., 3) array
         m.
     """
-    return _stack_components(*_flank_frame(design, roll, psi)[:3])
+    return _flank(design).point(psi, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
@@ -82,9 +82,7 @@ def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     (..., 3) array
         Unit vectors, dimensionless.
     """
-    _, ratio, space, _ = shaper_numbers(design)
-    roll, psi = _together(roll, psi)
-    return _stack_components(*closed_forms.normal(ratio * (psi - roll - space), psi))
+    return _flank(design).normal(psi, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
@@ -104,12 +102,14 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
     tuple of (..., 3) arrays
         Derivatives with respect to th and to psi, m/rad.
     """
-    frame = _flank_frame(design, roll, psi)
-    return _stack_components(*frame[3:6]), _stack_components(*frame[6:])
+    base = design.shaper_base_radius
+    by_psi, by_length = _flank(design).tangents(psi, base * np.asarray(roll, float))
+    return base * by_length, by_psi
 
 
-def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
-    return closed_forms.flank_frame(*shaper_numbers(design), *_together(roll, psi))
+def _flank(design: PairDesign) -> GearFlank:
+    """Return the right flank as a member of the family of all teeth."""
+    return gear_flank(design.family, -1)
 
 
 def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
@@ -161,13 +161,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     NotConverged
         Where the cylinder does not cut the flank there.
     """
-    base, ratio, _, _ = shaper_numbers(design)
-    radius, roll = _together(radius, roll)
-
-    def residual(psi: Array) -> tuple[Array, Array]:
-        return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
-
-    return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
+    return _flank(design).slope_at(radius, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
@@ -192,15 +186,8 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
     NotConverged
         Where the cylinder does not cut the flank there.
     """
-    base, ratio, _, lift = shaper_numbers(design)
-    radius, z = _together(radius, z)
-    height = (lift - z) / base
-
-    def residual(psi: Array) -> tuple[Array, Array]:
-        return closed_forms.radius_at_height(base, ratio, radius, height, psi)
-
-    psi = _newton(residual, local_pressure_angle(design, radius), radius**2, "flank at a height")
-    return closed_forms.roll_at_height(height, psi), psi
+    psi, length = _flank(design).parameters_at(radius, z)
+    return length / design.shaper_base_radius, psi
 
 
 def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:

@@ -14,10 +14,10 @@ from scipy.optimize import brentq, minimize_scalar
 
 from facegear.arrays import Array
 from facegear.errors import GeometryError
-from facegear.teeth.generated_fillet import gear_fillet
-from facegear.teeth.generated_flank import flank_end, gear_flank
+from facegear.teeth.generated_fillet import flank_end, gear_fillet
+from facegear.teeth.generated_flank import GearFlank, gear_flank
 from facegear.teeth.helicoid import pinion_land, shaper_land
-from facegear.teeth.tooth_family import SIDES, ToothFamily
+from facegear.teeth.tooth_family import SIDES, ToothFamily, dot
 
 SAMPLES = 256
 """Slopes at which the end of a flank is looked at before a limit is refined; 0.4 degrees apart."""
@@ -123,7 +123,7 @@ def flank_start(family: ToothFamily, side: int) -> FlankStart:
         lines = flank.lines(psi)
         point = lines.foot + s[..., None] * lines.normal
         radius = np.hypot(point[..., 0], point[..., 1])
-        sound = flank.singularity(psi, s) * flank.sound_sign
+        sound = soundness(flank, psi, s)
         return radius, np.stack([sound, family.gear_tip.height(radius) - point[..., 2]])
 
     psi = np.linspace(STEEPEST, FLATTEST, SAMPLES)
@@ -156,6 +156,54 @@ def flank_start(family: ToothFamily, side: int) -> FlankStart:
     return FlankStart(float(lowest.fun), "turns back", involute)
 
 
+def singular_quadratic(flank: GearFlank, psi: ArrayLike) -> tuple[Array, Array, Array]:
+    """Return the quadratic in s that vanishes on the singular line of a flank.
+
+    Parameters
+    ----------
+    flank : GearFlank
+        Flank of the gear.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Coefficients of s squared (1/rad), of s (m/rad), and without s (m2/rad).
+    """
+    lines = flank.lines(psi)
+    foot, normal, foot_psi, normal_psi = lines.foot, lines.normal, lines.foot_slope, lines.normal_slope
+    along = dot(normal, foot)
+    along_psi = dot(normal_psi, foot) + dot(normal, foot_psi)
+    linear = foot_psi[..., 2] + normal_psi[..., 2] * along - normal[..., 2] * along_psi
+    return normal_psi[..., 2], linear, foot_psi[..., 2] * along - normal[..., 2] * dot(foot, foot_psi)
+
+
+def soundness(flank: GearFlank, psi: ArrayLike, s: ArrayLike) -> Array:
+    """Return the singular line's quadratic with a sign that is positive on a sound flank.
+
+    Parameters
+    ----------
+    flank : GearFlank
+        Flank of the gear.
+    psi : (...) array_like
+        Slope of the normal, rad.
+    s : (...) array_like
+        Distance along the normal, m.
+
+    Returns
+    -------
+    (...) array
+        m2/rad.
+    """
+
+    def quadratic(psi: ArrayLike, s: ArrayLike) -> Array:
+        square, linear, constant = singular_quadratic(flank, psi)
+        return (square * np.asarray(s, float) + linear) * s + constant
+
+    return quadratic(psi, s) * np.sign(quadratic(flank.shaper.pressure_angle, flank.pitch_distance))
+
+
 def _involute_start(family: ToothFamily, side: int) -> float:
     """Return the largest gear radius (m) at which the shaper's involute begins on the tip surface, or nan."""
     flank, tip = gear_flank(family, side), family.gear_tip
@@ -171,7 +219,7 @@ def _involute_start(family: ToothFamily, side: int) -> float:
     for change in changes:
         root = brentq(lambda at: float(below(at)), psi[change + 1], psi[change], xtol=ROUNDING)
         foot = flank.lines(root).foot
-        if flank.singularity(root, 0.0) * flank.sound_sign > 0.0:
+        if soundness(flank, root, 0.0) > 0.0:
             radii.append(float(np.hypot(foot[0], foot[1])))
     return max(radii, default=float("nan"))
 

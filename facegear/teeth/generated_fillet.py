@@ -17,6 +17,8 @@ from scipy.optimize import minimize_scalar
 
 from facegear.arrays import Array
 from facegear.errors import NotConverged
+from facegear.teeth.generated_flank import gear_flank
+from facegear.teeth.helicoid import tip_distance
 from facegear.teeth.tooth_family import (
     Helicoid,
     RelativeMotion,
@@ -362,3 +364,26 @@ def gear_fillet(family: ToothFamily, side: int) -> GearFillet:
     return GearFillet(
         shaper, motion, family.lift, family.rounding_centre, family.shaper_tip_rounding, family.taper
     )
+
+
+def flank_end(family: ToothFamily, side: int, psi: ArrayLike) -> Array:
+    """Compute where the flank ends: at the shaper's tip edge or where its tip rounding begins.
+
+    Parameters
+    ----------
+    family : ToothFamily
+        Pair of gears.
+    side : int
+        Sign of the flank.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (...) array
+        Distance s along the normal, m; nan where the shaper's tip stays inside its base cylinder.
+    """
+    flank, taper = gear_flank(family, side), family.taper
+    y, shaper = flank.lines(psi).y, flank.shaper
+    radius = family.rounding_centre + (y - family.middle) * taper
+    return tip_distance(shaper, radius, taper) + family.shaper_tip_rounding

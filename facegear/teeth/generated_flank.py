@@ -7,6 +7,7 @@ Derived for this project; spur teeth are a limit (Litvin and Fuentes 2004, chapt
 `tooth_family`; the turn of a point is that of the gear since the shaper generated it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -14,14 +15,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 from facegear.errors import NotConverged
 from facegear.teeth.tooth_family import (
     Helicoid,
     RelativeMotion,
     ToothFamily,
     across_axis,
-    dot,
     stack_vectors,
     turn_about_axis,
 )
@@ -43,6 +43,8 @@ FURTHER_STARTS = (-0.15, 0.2, -0.35)
 helical flanks, whose slopes differ from those of spur teeth that it starts from."""
 ACCURATE = 1e-12
 """Largest Newton step of psi (rad) with which a point counts as found."""
+EXACT = np.finfo(float).eps
+"""Relative residual that ends Newton's method where steps stay above `CLOSE` by rounding."""
 ROUNDING = 16 * np.finfo(float).eps
 """Relative residual that counts as zero where steps cannot shrink any further, near a fold."""
 
@@ -172,8 +174,12 @@ class GearFlank:
         (..., 3) array
             m.
         """
-        lines, s = self.lines(u), np.asarray(v, float)
-        return turn_about_axis(self.turn(u, s, lines.y), lines.foot + s[..., None] * lines.normal)
+        psi, s = np.asarray(u, float), np.asarray(v, float)
+        parts = self.line_components(np.cos(psi), np.sin(psi))
+        turn = self.turn(psi, s, parts[12])
+        c, sine = np.cos(turn), np.sin(turn)
+        x, y = parts[0] + s * parts[6], parts[1] + s * parts[7]
+        return stack_vectors(x * c - y * sine, x * sine + y * c, parts[2] + s * parts[8])
 
     def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
         """Compute outward unit normals of the flank.
@@ -234,49 +240,7 @@ class GearFlank:
         by_psi = lines.normal_slope + self._turn_by_psi(lines)[..., None] * around
         return -turn_about_axis(turn, by_psi), -turn_about_axis(turn, self.rise * around)
 
-    def singularity(self, psi: ArrayLike, s: ArrayLike) -> Array:
-        """Return the quadratic of s that vanishes where the flank is singular.
-
-        Parameters
-        ----------
-        psi : (...) array_like
-            Slope of the normal, rad.
-        s : (...) array_like
-            Distance along the normal, m.
-
-        Returns
-        -------
-        (...) array
-            m2/rad; its sign is the same on all of a sound flank.
-        """
-        square, linear, constant = self.singular_quadratic(psi)
-        s = np.asarray(s, float)
-        return (square * s + linear) * s + constant
-
-    def singular_quadratic(self, psi: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return the coefficients of the singular line's quadratic in s.
-
-        Parameters
-        ----------
-        psi : (...) array_like
-            Slope of the normal, rad.
-
-        Returns
-        -------
-        tuple of (...) arrays
-            Coefficients of s squared (1/rad), of s (m/rad), and without s (m2/rad).
-        """
-        lines = self.lines(psi)
-        foot, normal, foot_psi, normal_psi = lines.foot, lines.normal, lines.foot_slope, lines.normal_slope
-        along = dot(normal, foot)
-        along_psi = dot(normal_psi, foot) + dot(normal, foot_psi)
-        square = normal_psi[..., 2]
-        linear = foot_psi[..., 2] + normal_psi[..., 2] * along - normal[..., 2] * along_psi
-        return square, linear, foot_psi[..., 2] * along - normal[..., 2] * dot(foot, foot_psi)
-
-    def parameters_at(
-        self, radius: ArrayLike, height: ArrayLike, near: ArrayLike | None = None
-    ) -> tuple[Array, Array]:
+    def parameters_at(self, radius: ArrayLike, height: ArrayLike) -> tuple[Array, Array]:
         """Find the parameters of the flank at a gear radius and a height.
 
         Parameters
@@ -285,8 +249,6 @@ class GearFlank:
             Gear radius, m.
         height : (...) array_like
             Height z, m.
-        near : (...) array_like, optional
-            Slopes to start from, rad.
 
         Returns
         -------
@@ -299,7 +261,7 @@ class GearFlank:
             Where the flank has no such place, or only beyond its singular line.
         """
         radius, height = np.broadcast_arrays(np.asarray(radius, float), np.asarray(height, float))
-        psi, s = self.search(radius, height, near)
+        psi, s = self.search(radius, height)
         if not np.all(np.isfinite(psi)):
             index = np.argmax(~np.isfinite(psi).ravel())
             place_text = f"{1e3 * radius.flat[index]:.3f} mm from the axis"
@@ -324,42 +286,91 @@ class GearFlank:
             psi, rad, and s, m.
         """
         radius, height = np.broadcast_arrays(np.asarray(radius, float), np.asarray(height, float))
-        if near is None:
-            near = np.arccos(np.clip(self.shaper.base_radius / self.motion.ratio / radius, -1.0, FLATTEST))
+        near = self._spur_slope(radius) if near is None else near
         start = np.broadcast_to(np.asarray(near, float), radius.shape)
-        psi, s = self._newton(start, radius, height)
+        psi, s = self._sound_place(start, radius, height)
         for shift in FURTHER_STARTS:
             rows = np.isnan(psi)
             if not rows.any():
                 break
-            retry_psi, retry_s = self._newton(start[rows] + shift, radius[rows], height[rows])
+            retry_psi, retry_s = self._sound_place(start[rows] + shift, radius[rows], height[rows])
             psi, s = psi.copy(), s.copy()
             psi[rows], s[rows] = retry_psi, retry_s
         return psi, s
 
-    def _newton(self, start: Array, radius: Array, height: Array) -> tuple[Array, Array]:
-        """Return psi and s at radii and heights by Newton's method, nan where it ends elsewhere."""
-        psi, is_close = np.asarray(start, float), np.zeros(radius.shape, bool)
-        for _ in range(STEPS):
-            s, residual, slope = _radius_residual(self.lines(psi), radius, height)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                step = np.clip(residual / slope, -LARGEST_STEP, LARGEST_STEP)
-            step = np.where(is_close | ~np.isfinite(step), 0.0, step)
-            is_close = is_close | (np.abs(step) < CLOSE)
-            if is_close.all():
-                break
-            psi = np.clip(psi - step, *SLOPES)
-        s, residual, slope = _radius_residual(self.lines(psi), radius, height)
-        is_found = np.abs(residual) <= np.maximum(ROUNDING * radius**2, ACCURATE * np.abs(slope))
-        is_found &= np.sign(self.singularity(psi, s)) == self.sound_sign
+    def slope_at(self, radius: ArrayLike, s: ArrayLike) -> Array:
+        """Find the slope of the flank at a gear radius and a distance along the normal.
+
+        Parameters
+        ----------
+        radius : (...) array_like
+            Gear radius, m.
+        s : (...) array_like
+            Distance along the normal, m.
+
+        Returns
+        -------
+        (...) array
+            psi, rad.
+
+        Raises
+        ------
+        NotConverged
+            Where no normal reaches the radius at this distance.
+        """
+        radius, s = np.broadcast_arrays(np.asarray(radius, float), np.asarray(s, float))
+
+        def residual(parts: tuple[Array, ...]) -> tuple[Array, Array]:
+            return _radius_residual(parts, radius, s, 0.0)
+
+        psi, _, is_found = self._newton(self._spur_slope(radius), radius, residual)
+        if not np.all(is_found):
+            raise NotConverged("geometry", "slope at a gear radius", f"{STEPS} Newton steps")
+        return psi
+
+    def _spur_slope(self, radius: Array) -> Array:
+        """Return the slope (rad) of spur teeth on the pitch line, from which searches start."""
+        return np.arccos(np.clip(self.shaper.base_radius / self.motion.ratio / radius, -1.0, FLATTEST))
+
+    def _sound_place(self, start: Array, radius: Array, height: Array) -> tuple[Array, Array]:
+        """Return psi and s at radii and heights, nan where there is no root before the singular line."""
+
+        def residual(parts: tuple[Array, ...]) -> tuple[Array, Array]:
+            return _radius_residual(parts, radius, *_distance_at(parts, height))
+
+        psi, slope, is_found = self._newton(start, radius, residual)
+        # at one height the radius grows with the slope on one side of the singular line only
+        is_found = is_found & (slope * self._growth_sign > 0.0)
+        s = _distance_at(self.line_components(np.cos(psi), np.sin(psi)), height)[0]
         return np.where(is_found, psi, np.nan), np.where(is_found, s, np.nan)
 
+    def _newton(
+        self, start: Array, radius: Array, residual: Callable[[tuple[Array, ...]], tuple[Array, Array]]
+    ) -> tuple[Array, Array, Mask]:
+        """Return roots of a residual of squared radii, its slope there, and whether each is a root."""
+        psi = np.asarray(start, float)
+        for _ in range(STEPS):
+            value, slope = residual(self.line_components(np.cos(psi), np.sin(psi)))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = np.clip(value / slope, -LARGEST_STEP, LARGEST_STEP)
+            step = np.where(np.isfinite(step), step, 0.0)
+            psi = np.clip(psi - step, *SLOPES)
+            if np.all((np.abs(step) < CLOSE) | (np.abs(value) <= EXACT * radius**2)):
+                break
+        return psi, slope, np.abs(value) <= np.maximum(ROUNDING * radius**2, ACCURATE * np.abs(slope))
+
     @cached_property
-    def sound_sign(self) -> float:
-        """Sign of `singularity` on the flank: that at the pressure angle, on the pitch line."""
+    def _growth_sign(self) -> float:
+        """Sign of the growth of the radius with the slope, at one height, on the pitch line."""
         angle = self.shaper.pressure_angle
-        length = self.shaper.pitch_radius * np.sin(angle) / self.shaper.cosine
-        return float(np.sign(self.singularity(angle, length)))
+        parts = self.line_components(np.cos(angle), np.sin(angle))
+        height = parts[2] + self.pitch_distance * parts[8]
+        return float(np.sign(_radius_residual(parts, 0.0, *_distance_at(parts, height))[1]))
+
+    @property
+    def pitch_distance(self) -> float:
+        """Distance (m) of the pitch line along its normal."""
+        return self.shaper.pitch_radius * float(np.sin(self.shaper.pressure_angle)) / self.shaper.cosine
 
     def _turn_by_psi(self, lines: NormalLines) -> Array:
         return self.rise * self.shaper.sine * lines.y_slope - self.shaper.side * self.motion.ratio
@@ -370,15 +381,20 @@ class GearFlank:
         return by_psi + self._turn_by_psi(lines)[..., None] * around, lines.normal + self.rise * around
 
 
-def _radius_residual(lines: NormalLines, radius: Array, height: Array) -> tuple[Array, Array, Array]:
-    """Return s at the height, by how much the squared radius is too large there, and its derivative."""
-    foot, normal = lines.foot, lines.normal
-    s = (height - foot[..., 2]) / normal[..., 2]
-    s_psi = -(lines.foot_slope[..., 2] + s * lines.normal_slope[..., 2]) / normal[..., 2]
-    plane = foot[..., :2] + s[..., None] * normal[..., :2]
-    plane_psi = lines.foot_slope[..., :2] + s[..., None] * lines.normal_slope[..., :2]
-    plane_psi = plane_psi + s_psi[..., None] * normal[..., :2]
-    return s, dot(plane, plane) - radius * radius, 2 * dot(plane, plane_psi)
+def _distance_at(parts: tuple[Numbers, ...], height: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the distances (m) along lines at which they reach a height, and their slopes by psi."""
+    s = (height - parts[2]) / parts[8]
+    return s, -(parts[5] + s * parts[11]) / parts[8]
+
+
+def _radius_residual(
+    parts: tuple[Numbers, ...], radius: Numbers, s: Numbers, s_psi: Numbers
+) -> tuple[Numbers, Numbers]:
+    """Return by how much the squared radius of lines at s is too large, and its derivative by psi."""
+    x, y = parts[0] + s * parts[6], parts[1] + s * parts[7]
+    x_psi = parts[3] + s * parts[9] + s_psi * parts[6]
+    y_psi = parts[4] + s * parts[10] + s_psi * parts[7]
+    return x * x + y * y - radius * radius, 2 * (x * x_psi + y * y_psi)
 
 
 @lru_cache(maxsize=256)
@@ -398,52 +414,3 @@ def gear_flank(family: ToothFamily, side: int) -> GearFlank:
         The flank.
     """
     return GearFlank(family.shaper_flanks[0 if side > 0 else 1], family.cutting_motion, family.lift)
-
-
-def flank_end(family: ToothFamily, side: int, psi: ArrayLike) -> Array:
-    """Compute where the flank ends: at the shaper's tip edge or where its tip rounding begins.
-
-    Parameters
-    ----------
-    family : ToothFamily
-        Pair of gears.
-    side : int
-        Sign of the flank.
-    psi : (...) array_like
-        Slope of the normal, rad.
-
-    Returns
-    -------
-    (...) array
-        Distance s along the normal, m; nan where the shaper's tip stays inside its base cylinder.
-    """
-    flank, taper = gear_flank(family, side), family.taper
-    y, shaper = flank.lines(psi).y, flank.shaper
-    radius = family.rounding_centre + (y - family.middle) * taper
-    return tip_distance(shaper, radius, taper) + family.shaper_tip_rounding
-
-
-def tip_distance(helicoid: Helicoid, radius: ArrayLike, taper: float) -> Array:
-    """Compute the distance along a normal at which a helicoid reaches a tip cone.
-
-    Parameters
-    ----------
-    helicoid : Helicoid
-        Flank.
-    radius : (...) array_like
-        Radius of the cone in the section of the normal's foot, m.
-    taper : float
-        Growth of the radius per length of face, dimensionless.
-
-    Returns
-    -------
-    (...) array
-        s, m; nan where the cone lies inside the base cylinder.
-    """
-    radius = np.asarray(radius, float)
-    growth = helicoid.sine * taper
-    square = helicoid.cosine**2 - growth**2
-    half = growth * radius
-    with np.errstate(invalid="ignore"):
-        root = np.sqrt(half**2 + square * (radius**2 - helicoid.base_radius**2))
-    return (half + root) / square

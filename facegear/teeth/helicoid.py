@@ -266,6 +266,32 @@ def pinion_fillet(family: ToothFamily, side: int) -> PinionFillet:
     )
 
 
+def tip_distance(helicoid: Helicoid, radius: ArrayLike, taper: float) -> Array:
+    """Compute the distance along a normal at which a helicoid reaches a tip cone.
+
+    Parameters
+    ----------
+    helicoid : Helicoid
+        Flank.
+    radius : (...) array_like
+        Radius of the cone in the section of the normal's foot, m.
+    taper : float
+        Growth of the radius per length of face, dimensionless.
+
+    Returns
+    -------
+    (...) array
+        s, m; nan where the cone lies inside the base cylinder.
+    """
+    radius = np.asarray(radius, float)
+    growth = helicoid.sine * taper
+    square = helicoid.cosine**2 - growth**2
+    half = growth * radius
+    with np.errstate(invalid="ignore"):
+        root = np.sqrt(half**2 + square * (radius**2 - helicoid.base_radius**2))
+    return (half + root) / square
+
+
 def pinion_start(family: ToothFamily, side: int, y: ArrayLike) -> Array:
     """Compute where the pinion's involute begins: at its root.
 

@@ -275,15 +275,6 @@ def test_slopes_of_the_fillet_frame_are_differences_of_its_points(pair):
     np.testing.assert_allclose(found[6:], by_q, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("residual", [closed_forms.radius_at_roll, closed_forms.radius_at_height])
-def test_slopes_that_newtons_method_takes_are_differences_of_its_residual(pair, residual):
-    base, ratio, _, _ = face_gear.shaper_numbers(pair())
-    psi, at = np.radians([18.0, 25.0, 33.0]), np.array([0.3, 0.4, 0.5])
-    slope = residual(base, ratio, 0.26, at, psi)[1]
-    wanted = differences(lambda angle: residual(base, ratio, 0.26, at, angle)[0], psi, 1e-6)
-    np.testing.assert_allclose(slope, wanted, rtol=1e-7)
-
-
 def test_the_fraction_of_the_fillets_turn_leads_back_to_its_slope(pair):
     design, fractions = pair(tip_rounding=0.1), np.linspace(0.0, 1.0, 5)
     psi = face_gear_fillet.fillet_slopes(design, 0.26, fractions)

@@ -9,7 +9,8 @@ from facegear.errors import GeometryError
 from facegear.teeth.bounded_contact import contact_path, modified_contact
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import check_family
-from facegear.teeth.generated_flank import flank_end, gear_flank
+from facegear.teeth.generated_fillet import flank_end
+from facegear.teeth.generated_flank import gear_flank
 from facegear.teeth.tooth_family import turn_about_axis
 
 DESIGNS, CHECKED = 300, 20
