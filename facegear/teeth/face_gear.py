@@ -1,14 +1,11 @@
-"""The face gear's flank and fillet in closed form: envelopes of the shaper's involute and of its tip.
+"""The spur face gear's flank: the right flank of the family, in the terms of the shaper's roll angle.
 
 Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
-normal. Source: shaper-generated face gears (Litvin and Fuentes 2004, chapter 18),
-with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi). A tip rounded about a
-centre at R_c, which stands chi from the vertical, generates with the same slope psi where
-q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radius zero.
+normal. The closed forms are those of `generated_flank`; source of the spur limit: Litvin and Fuentes 2004,
+chapter 18.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,11 +14,8 @@ import scipy
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.errors import NotConverged
 from facegear.teeth.design import PairDesign, as_cut
 from facegear.teeth.generated_flank import GearFlank, gear_flank
-
-ROUNDING = 16 * np.finfo(float).eps
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
@@ -110,15 +104,6 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
 def _flank(design: PairDesign) -> GearFlank:
     """Return the right flank as a member of the family of all teeth."""
     return gear_flank(design.family, -1)
-
-
-def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
-    arrays = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
-    return arrays[0], arrays[1]
-
-
-def _stack_components(x: Array, y: Array, z: Array) -> Array:
-    return np.stack([x, y, z], axis=-1)
 
 
 def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
@@ -240,27 +225,6 @@ def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
     point = flank_point(design, roll, psi)
     angle = np.arctan2(point[:, 0], point[:, 1])
     return TipEdge(*(scipy.interpolate.CubicSpline(radius, values) for values in (roll, angle)))
-
-
-def _newton(
-    residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, task_text: str
-) -> Array:
-    """Return the root near `near` (rad or m) of a difference of numbers of magnitude `size`.
-
-    Near a fold, where steps stay above rounding, the residual decides. Raises NotConverged.
-    """
-    at = near
-    for _ in range(60):
-        value, slope = residual(at)
-        step = np.clip(value / slope, -0.1, 0.1)
-        at = at - step
-        if np.all(np.abs(step) < 1e-14):
-            return at
-        if not np.all(np.isfinite(at)):
-            break
-    if np.all(np.isfinite(at)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
-        return at
-    raise NotConverged("geometry", task_text, "60 Newton steps")
 
 
 def edge_start(design: PairDesign) -> float:

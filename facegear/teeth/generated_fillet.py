@@ -32,6 +32,10 @@ STEPS = 60
 """Newton steps before a gear radius counts as not reached; five are enough for teeth that can be cut."""
 CLOSE = 1e-15
 """Newton step (m) that ends the search: rounding of a length of 0.1 m is some 1.4e-17 m."""
+LARGEST_TURN = 0.3
+"""Largest step of Delta (rad), a fraction of the fillet's whole turn."""
+QUADRATIC = 1e-8
+"""Newton step (m and rad) after which the next one is below rounding."""
 SAMPLES = 257
 """Points of a section among which the smallest radius of curvature is looked for before it is refined."""
 
@@ -40,15 +44,17 @@ SAMPLES = 257
 class FilletPoints:
     """Points (..., 3) of a fillet in the mesh frame as they are generated (m), with unit normals (..., 3).
 
-    turn: of the gear since they were generated (...), rad. slopes: derivatives of position, normal and turn
-    by y and by Delta, in pairs.
+    psi: slope of the normal in the shaper's transverse section (...), rad. turn: of the gear since they were
+    generated (...), rad. slopes: derivatives of position, normal, psi and turn by y and by Delta, in pairs.
     """
 
     position: Array
     normal: Array
+    psi: Array
     turn: Array
     position_slopes: tuple[Array, Array]
     normal_slopes: tuple[Array, Array]
+    psi_slopes: tuple[Array, Array]
     turn_slopes: tuple[Array, Array]
 
 
@@ -146,7 +152,14 @@ class GearFillet:
         turn = side * ratio * (rolled_angle - phase - psi + angle)
         turn_slopes = side * ratio * ((roll_y + lead) / base - psi_y), side * ratio * (1.0 - psi_angle)
         return FilletPoints(
-            position, normal, turn, (slopes[0][0], slopes[1][0]), (slopes[0][1], slopes[1][1]), turn_slopes
+            position=position,
+            normal=normal,
+            psi=psi,
+            turn=turn,
+            position_slopes=(slopes[0][0], slopes[1][0]),
+            normal_slopes=(slopes[0][1], slopes[1][1]),
+            psi_slopes=(psi_y, psi_angle),
+            turn_slopes=turn_slopes,
         )
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
@@ -249,6 +262,47 @@ class GearFillet:
         if np.all(np.abs(step) < 1e-12):
             return y
         raise NotConverged("geometry", "fillet at a gear radius", f"{STEPS} Newton steps")
+
+    def at_slope(self, radius: ArrayLike, psi: ArrayLike) -> FilletPoints:
+        """Find points of the fillet by gear radius and slope of the normal.
+
+        Parameters
+        ----------
+        radius : (...) array_like
+            Gear radius, m.
+        psi : (...) array_like
+            Slope of the normal in the shaper's transverse section, rad.
+
+        Returns
+        -------
+        FilletPoints
+            Points in m and rad.
+
+        Raises
+        ------
+        NotConverged
+            Where the fillet has no such point.
+        """
+        radius, psi = np.broadcast_arrays(np.asarray(radius, float), np.asarray(psi, float))
+        y, first = radius, self.shaper.pressure_angle
+        angle = np.clip((psi - first) / (np.pi / 2 - first), 0.0, 1.0) * self.last_angle(y)
+        for _ in range(STEPS):
+            points = self.generate(y, angle)
+            plane = points.position[..., :2]
+            far, steep = dot(plane, plane) - radius**2, points.psi - psi
+            far_y, far_angle = (2 * dot(plane, part[..., :2]) for part in points.position_slopes)
+            steep_y, steep_angle = points.psi_slopes
+            scale = far_y * steep_angle - far_angle * steep_y
+            y_step = (far * steep_angle - far_angle * steep) / scale
+            angle_step = (far_y * steep - far * steep_y) / scale
+            y = y - np.clip(y_step, -0.2 * radius, 0.2 * radius)
+            angle = angle - np.clip(angle_step, -LARGEST_TURN, LARGEST_TURN)
+            largest = np.max(np.abs(y_step)) + np.max(np.abs(angle_step))
+            if not largest > QUADRATIC:
+                break
+        if not largest <= QUADRATIC:
+            raise NotConverged("geometry", "fillet at a gear radius", f"{STEPS} Newton steps")
+        return self.generate(y, angle)
 
     def curvatures(self, y: ArrayLike, part: ArrayLike) -> Array:
         """Compute the principal curvatures of the fillet.
