@@ -8,14 +8,15 @@ import pytest
 from public_teeth import ERRORS, MM, NAMES, public_design
 from rolled_rack import body_turn, depth_in_pinion
 
+from facegear.errors import GeometryError
 from facegear.teeth.backlash import gear_backlash
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.family_contact import PinionPose, contact_line
-from facegear.teeth.family_limits import family_limits
+from facegear.teeth.family_limits import check_family, family_limits, root_land
 from facegear.teeth.generated_fillet import gear_fillet
 from facegear.teeth.generated_flank import gear_flank
-from facegear.teeth.helicoid import pinion_fillet, pinion_land
+from facegear.teeth.helicoid import pinion_fillet, shaper_land
 from facegear.teeth.tooth_family import turn_about_axis
 
 SIDES = (1, -1)
@@ -303,8 +304,13 @@ def test_the_shapers_involute_can_begin_outside_undercut():
 def test_tapered_teeth_need_not_be_pointed_but_lose_their_root_outside():
     family = public_design("P2")
     assert family_limits(family).pointing == np.inf
-    lands = pinion_land(family, family.middle + np.array([-0.5, 0.5]) * family.width)
-    assert lands[1] < lands[0]
+    lands = shaper_land(family, family.middle + np.array([-0.5, 0.5]) * family.width)
+    assert lands[1] < 0.1 * lands[0]
+    roots = root_land(family, np.array([family.inner_radius, family.outer_radius]))
+    assert roots[1] < 0.3 * roots[0]
+    wide = replace(family, width=36 * MM)
+    with pytest.raises(GeometryError, match="tip land of the shaper"):
+        check_family(wide)
 
 
 def test_the_sign_of_the_offset_against_the_hand_decides_which_flank_suffers():
@@ -317,11 +323,11 @@ def test_the_sign_of_the_offset_against_the_hand_decides_which_flank_suffers():
     assert max(drive) - min(drive) < 2 * MM
 
 
-@CASES
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("name", ["P1", "P4"])
 def test_a_sharp_edge_leaves_a_corner_where_it_moves_along_itself(name, side):
+    """The closed form of the corner's radius is that of a cylindrical shaper at a right angle."""
     family = replace(public_design(name), shaper_tip_rounding=0.0)
-    if family.taper != 0.0 or family.shaft_angle != pi / 2:
-        pytest.skip("the closed form is that of a cylinder at a right angle")
     # at the lowest place the shaper's edge and the gear move against each other along the edge's direction
     tip, ratio = family.shaper_tip_radius, family.cutting_motion.ratio
     edge = tip / family.shaper_pitch_radius * tan(family.rack.helix_angle)
@@ -369,3 +375,20 @@ def test_the_public_designs_clear_each_others_roots(name, side):
     family = public_design(name)
     for radius in np.linspace(family.inner_radius, family.outer_radius, 5):
         assert deepest_tip_edge(family, side, radius) < 2e-8
+
+
+REFUSED = {
+    "P1": ({"inner_radius": 210 * MM}, "at least 214.598 mm .undercut of the drive flank."),
+    "P3": ({"inner_radius": 156 * MM}, "at least 157.862 mm .undercut of the coast flank."),
+    "P4": ({"outer_radius": 275 * MM}, "less than 271.479 mm, where the teeth are pointed"),
+    "P2": ({"pinion_addendum": 9 * MM}, "tip land of the pinion"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_face_beyond_its_limits_is_refused_with_flank_and_reason(name):
+    change, message = REFUSED[name]
+    family = public_design(name)
+    check_family(family)
+    with pytest.raises(GeometryError, match=message):
+        check_family(replace(family, **change))
