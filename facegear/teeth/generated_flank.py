@@ -10,6 +10,7 @@ Derived for this project; spur teeth are a limit (Litvin and Fuentes 2004, chapt
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from math import cos, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -327,6 +328,27 @@ class GearFlank:
         if not np.all(is_found):
             raise NotConverged("geometry", "slope at a gear radius", f"{STEPS} Newton steps")
         return psi
+
+    def growth_at_height(self, psi: float, height: float) -> tuple[float, float, float]:
+        """Return where the line of a slope reaches a height, and how fast the radius grows there.
+
+        Parameters
+        ----------
+        psi : float
+            Slope of the normal, rad.
+        height : float
+            Height z, m.
+
+        Returns
+        -------
+        tuple of float
+            Distance s along the normal, m; gear radius, m; derivative of its square by psi, m2/rad, which
+            vanishes on the singular line.
+        """
+        parts = self.line_components(cos(psi), sin(psi))
+        s, s_psi = _distance_at(parts, height)
+        square, slope = _radius_residual(parts, 0.0, s, s_psi)
+        return s, sqrt(square), slope
 
     def _spur_slope(self, radius: Array) -> Array:
         """Return the slope (rad) of spur teeth on the pitch line, from which searches start."""
