@@ -5,6 +5,7 @@ contact line and a half-length a along it. Both the line contact (a far above b)
 met exactly.
 """
 
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -45,8 +46,22 @@ def contact_modulus(materials: tuple[Material, Material]) -> float:
     return 1.0 / sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
 
 
-def longer_semi_axis(force: float, across: float, along: float, modulus: float) -> float:
-    """Compute the semi-axis of the contact ellipse in the direction of the smaller curvature.
+@dataclass(frozen=True)
+class ContactEllipse:
+    """Elliptic contact of two bodies under a force.
+
+    long, short: semi-axes (m) in the directions of the smaller and the larger relative curvature. pressure:
+    largest (Pa). approach: of the bodies (m).
+    """
+
+    long: float
+    short: float
+    pressure: float
+    approach: float
+
+
+def contact_ellipse(force: float, across: float, along: float, modulus: float) -> ContactEllipse:
+    """Compute the contact ellipse of two bodies.
 
     For bodies with equal curvatures it is that of a sphere. Source: Johnson 1985, chapter 4.
 
@@ -63,8 +78,8 @@ def longer_semi_axis(force: float, across: float, along: float, modulus: float) 
 
     Returns
     -------
-    float
-        Semi-axis, m.
+    ContactEllipse
+        Semi-axes, pressure and approach, m and Pa.
     """
 
     def parts(ratio: float) -> tuple[float, float]:
@@ -80,7 +95,12 @@ def longer_semi_axis(force: float, across: float, along: float, modulus: float) 
     ratio = float(np.exp(0.5 * (low + high)))
     _, across_part = parts(ratio)
     cubed = 3.0 * force * across_part / (pi * across * modulus * (1.0 - ratio**2))
-    return float(cubed ** (1 / 3))
+    long = float(cubed ** (1 / 3))
+    if long == 0.0:
+        return ContactEllipse(0.0, 0.0, 0.0, 0.0)
+    pressure = 1.5 * force / (pi * long * long * ratio)
+    approach = 1.5 * force * float(ellipkm1(ratio**2)) / (pi * long * modulus)
+    return ContactEllipse(long, ratio * long, pressure, approach)
 
 
 def strip_pressure(

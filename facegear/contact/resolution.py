@@ -5,7 +5,7 @@ memory.
 from dataclasses import replace
 from math import ceil, inf, pi, sin, sqrt
 
-from facegear.contact.hertz import contact_modulus, longer_semi_axis
+from facegear.contact.hertz import contact_ellipse, contact_modulus
 from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
 from facegear.quantities import BODIES
@@ -216,7 +216,7 @@ def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material]
     along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + deviation_curvature
     across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
     force = torque / design.pinion_base_radius / 2.0
-    return plain + longer_semi_axis(force, across, along, contact_modulus(materials))
+    return plain + contact_ellipse(force, across, along, contact_modulus(materials)).long
 
 
 def along_the_ellipse(

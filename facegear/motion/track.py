@@ -30,9 +30,9 @@ def add_ring_forces(
 ) -> None:
     """Write the forces of bodies on R bearings whose springs act beyond a radial clearance.
 
-    A body at r = (x, y), d from its centre, presses with F = k (1 - c / d) r, and with lag * dF/dt for the damping; inside the
-    clearance both are zero. The components along x and y of the bodies with such a bearing are overwritten,
-    everything else in `forces` stays as it is.
+    A body at r = (x, y), d from its centre, presses with F = k (1 - c / d) r, and with lag * dF/dt for
+    the damping; inside the clearance both are zero. The components along x and y of the bodies with such
+    a bearing are overwritten, everything else in `forces` stays as it is.
 
     Parameters
     ----------

@@ -6,8 +6,10 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.design import PairDesign
+from facegear.teeth.generated_flank import gear_flank
 from facegear.teeth.limits import sharpest_fillet_radius
 from facegear.teeth.modifications import added_curvatures, derivative
+from facegear.teeth.tooth_family import stack_vectors, turn_about_axis
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
@@ -32,12 +34,11 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
         Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    base, ratio, space, lift = face_gear.shaper_numbers(design)
-    turn = ratio * (psi - roll - space)
-    c, s = np.cos(turn), np.sin(turn)
-    profile = np.stack([np.sin(psi) * c, np.sin(psi) * s, -np.cos(psi)], axis=-1)
-    axial = np.stack([-s, c, np.zeros_like(turn)], axis=-1)
-    nominal = 1 / (base * roll - lift * np.sin(psi)), 0.0, 0.0
+    base, flank = design.shaper_base_radius, gear_flank(design.family, -1)
+    turn = flank.turn(psi, base * roll, design.mean_radius)
+    profile = turn_about_axis(turn, stack_vectors(np.sin(psi), 0.0, -np.cos(psi)))
+    axial = turn_about_axis(turn, np.broadcast_to([0.0, 1.0, 0.0], profile.shape))
+    nominal = 1 / (base * roll - design.shaper_lift * np.sin(psi)), 0.0, 0.0
     return _principal(design, roll, psi, profile, axial, nominal)
 
 
@@ -113,13 +114,9 @@ def _principal(
     extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank
     does not have, the pinion's among them.
     """
-    _, ratio, space, _ = face_gear.shaper_numbers(design)
-    turn = ratio * (psi - roll - space)
-    c, s = np.cos(turn), np.sin(turn)
-    around = np.stack([-np.cos(psi) * s, np.cos(psi) * c, np.zeros_like(turn)], axis=-1)
-    normal_psi = np.stack([-np.sin(psi) * c, -np.sin(psi) * s, np.cos(psi)], axis=-1) + ratio * around
-    tangents = np.stack(face_gear.flank_tangents(design, roll, psi), axis=-1)
-    changes = np.stack([-ratio * around, normal_psi], axis=-1)
+    flank, length = gear_flank(design.family, -1), design.shaper_base_radius * roll
+    tangents = np.stack(flank.tangents(psi, length), axis=-1)
+    changes = np.stack(flank.normal_tangents(psi, length), axis=-1)
     basis = np.stack([profile, axial], axis=-2)
     shape = (basis @ changes) @ np.linalg.inv(basis @ tangents)
     shape = (shape + np.swapaxes(shape, -1, -2)) / 2

@@ -24,6 +24,7 @@ from math import cos, pi, sqrt, tan
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.teeth.tooth_family import Rack, ToothFamily
 
 BACKLASH_DIFFERS_UM = 1.0
 """Difference between a backlash that is given and that of the teeth as assembled that is worth a note."""
@@ -205,6 +206,30 @@ class PairDesign:
         """Whether a flank that touches when the pinion drives deviates."""
         grids = self.pinion.flanks.right, self.face_gear.flanks.left
         return not all(grid is None or grid.zero for grid in grids)
+
+    @cached_property
+    def family(self) -> ToothFamily:
+        """The pair's nominal teeth as members of the family of all kinds, without errors of assembly."""
+        pinion, gear, shaper = self.pinion, self.face_gear, self.shaper
+        return ToothFamily(
+            rack=Rack(self.module, (self.pressure_angle, self.pressure_angle)),
+            pinion_teeth=pinion.teeth,
+            gear_teeth=gear.teeth,
+            shaper_teeth=shaper.teeth,
+            middle=self.mean_radius,
+            width=pinion.width,
+            inner_radius=gear.inner_radius,
+            outer_radius=gear.outer_radius,
+            pinion_addendum=pinion.addendum,
+            pinion_dedendum=pinion.dedendum,
+            gear_addendum=gear.addendum,
+            shaper_addendum=shaper.addendum,
+            profile_shift=pinion.profile_shift,
+            thinning=pinion.thinning,
+            rack_tip_radius=pinion.rack_tip_radius,
+            shaper_tip_rounding=shaper.tip_rounding,
+            pinion_tip_chamfer=pinion.tip_chamfer,
+        )
 
     @cached_property
     def pinion_pitch_radius(self) -> float:

@@ -1,14 +1,11 @@
-"""The face gear's flank and fillet in closed form: envelopes of the shaper's involute and of its tip.
+"""The spur face gear's flank: the right flank of the family, in the terms of the shaper's roll angle.
 
 Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
-normal. Source: shaper-generated face gears (Litvin and Fuentes 2004, chapter 18),
-with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi). A tip rounded about a
-centre at R_c, which stands chi from the vertical, generates with the same slope psi where
-q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radius zero.
+normal. The closed forms are those of `generated_flank`; source of the spur limit: Litvin and Fuentes 2004,
+chapter 18.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,12 +14,8 @@ import scipy
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.errors import NotConverged
-from facegear.teeth import closed_forms
 from facegear.teeth.design import PairDesign, as_cut
-
-ROUNDING = 16 * np.finfo(float).eps
-"""Residual over the size of its terms that counts as zero: a few roundings of a double."""
+from facegear.teeth.generated_flank import GearFlank, gear_flank
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
@@ -63,7 +56,7 @@ def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     (..., 3) array
         m.
     """
-    return _stack_components(*_flank_frame(design, roll, psi)[:3])
+    return _flank(design).point(psi, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
@@ -83,9 +76,7 @@ def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     (..., 3) array
         Unit vectors, dimensionless.
     """
-    _, ratio, space, _ = shaper_numbers(design)
-    roll, psi = _together(roll, psi)
-    return _stack_components(*closed_forms.normal(ratio * (psi - roll - space), psi))
+    return _flank(design).normal(psi, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
@@ -105,24 +96,14 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
     tuple of (..., 3) arrays
         Derivatives with respect to th and to psi, m/rad.
     """
-    frame = _flank_frame(design, roll, psi)
-    return _stack_components(*frame[3:6]), _stack_components(*frame[6:])
+    base = design.shaper_base_radius
+    by_psi, by_length = _flank(design).tangents(psi, base * np.asarray(roll, float))
+    return base * by_length, by_psi
 
 
-def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
-    """Return point and derivatives of the generated flank at roll angle and psi."""
-    return closed_forms.flank_frame(*shaper_numbers(design), *_together(roll, psi))
-
-
-def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
-    """Return two arrays at their common shape."""
-    arrays = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
-    return arrays[0], arrays[1]
-
-
-def _stack_components(x: Array, y: Array, z: Array) -> Array:
-    """Return vectors (..., 3) of their components."""
-    return np.stack([x, y, z], axis=-1)
+def _flank(design: PairDesign) -> GearFlank:
+    """Return the right flank as a member of the family of all teeth."""
+    return gear_flank(design.family, -1)
 
 
 def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
@@ -165,13 +146,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     NotConverged
         Where the cylinder does not cut the flank there.
     """
-    base, ratio, _, _ = shaper_numbers(design)
-    radius, roll = _together(radius, roll)
-
-    def residual(psi: Array) -> tuple[Array, Array]:
-        return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
-
-    return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
+    return _flank(design).slope_at(radius, design.shaper_base_radius * np.asarray(roll, float))
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
@@ -196,15 +171,8 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
     NotConverged
         Where the cylinder does not cut the flank there.
     """
-    base, ratio, _, lift = shaper_numbers(design)
-    radius, z = _together(radius, z)
-    height = (lift - z) / base
-
-    def residual(psi: Array) -> tuple[Array, Array]:
-        return closed_forms.radius_at_height(base, ratio, radius, height, psi)
-
-    psi = _newton(residual, local_pressure_angle(design, radius), radius**2, "flank at a height")
-    return closed_forms.roll_at_height(height, psi), psi
+    psi, length = _flank(design).parameters_at(radius, z)
+    return length / design.shaper_base_radius, psi
 
 
 def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
@@ -258,27 +226,6 @@ def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
     point = flank_point(design, roll, psi)
     angle = np.arctan2(point[:, 0], point[:, 1])
     return TipEdge(*(scipy.interpolate.CubicSpline(radius, values) for values in (roll, angle)))
-
-
-def _newton(
-    residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, task_text: str
-) -> Array:
-    """Return the root near `near` (rad or m) of a difference of numbers of magnitude `size`.
-
-    Near a fold, where steps stay above rounding, the residual decides. Raises NotConverged.
-    """
-    at = near
-    for _ in range(60):
-        value, slope = residual(at)
-        step = np.clip(value / slope, -0.1, 0.1)
-        at = at - step
-        if np.all(np.abs(step) < 1e-14):
-            return at
-        if not np.all(np.isfinite(at)):
-            break
-    if np.all(np.isfinite(at)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
-        return at
-    raise NotConverged("geometry", task_text, "60 Newton steps")
 
 
 def edge_start(design: PairDesign) -> float:

@@ -1,12 +1,17 @@
-"""Fillet of the face gear in closed form: the envelope of the shaper's rounded tip."""
+"""The spur face gear's fillet: that of the family, by gear radius and slope of the normal.
+
+A tip rounded about a centre that stands chi from the vertical generates with the slope psi where both fit the
+equation of meshing, see `generated_fillet`; a sharp tip edge is the rounding of radius zero.
+"""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.teeth import closed_forms
 from facegear.teeth.design import PairDesign
-from facegear.teeth.face_gear import _newton, _stack_components, _together, edge_start, psi_at
+from facegear.teeth.face_gear import edge_start, psi_at
+from facegear.teeth.generated_fillet import gear_fillet
+from facegear.teeth.tooth_family import turn_about_axis
 
 
 def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
@@ -28,38 +33,13 @@ def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tup
     tuple of (...) arrays
         Gear angle, rad, and z, m.
     """
-    x, y, z = closed_forms.fillet_frame(*tip_numbers(design), psi, fillet_q(design, radius, psi))[:3]
-    return np.arctan2(x, y), z
-
-
-def fillet_q(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute the position along its axis at which the shaper generates a point of the fillet.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-    radius : (...) array_like
-        Gear radius, m.
-    psi : (...) array_like
-        Slope of the fillet's normal, rad.
-
-    Returns
-    -------
-    (...) array
-        m.
-    """
-    radius, psi = _together(radius, psi)
-
-    def residual(q: Array) -> tuple[Array, Array]:
-        x, y, _, _, _, _, x_q, y_q, _ = closed_forms.fillet_frame(*tip_numbers(design), psi, q)
-        return x * x + y * y - radius * radius, 2 * (x * x_q + y * y_q)
-
-    return _newton(residual, radius, radius**2, "fillet at a gear radius")
+    points = gear_fillet(design.family, -1).at_slope(radius, psi)
+    position = turn_about_axis(points.turn, points.position)
+    return np.arctan2(position[..., 0], position[..., 1]), position[..., 2]
 
 
 def tip_numbers(design: PairDesign) -> tuple[float, float, float, float, float]:
-    """Return the numbers of the shaper that `closed_forms.fillet_frame` takes.
+    """Return the numbers of the shaper's tip that the kernels of rays take.
 
     Parameters
     ----------
@@ -152,10 +132,8 @@ def fillet_normal(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Arra
     (..., 3) array
         Unit vectors, dimensionless.
     """
-    centre, _, ratio, _, start = tip_numbers(design)
-    psi = np.asarray(psi, float)
-    chi = psi - np.arccos(ratio * fillet_q(design, radius, psi) * np.cos(psi) / centre)
-    return _stack_components(*closed_forms.normal(ratio * (chi - start), psi))
+    points = gear_fillet(design.family, -1).at_slope(radius, psi)
+    return -turn_about_axis(points.turn, points.normal)
 
 
 def root_half_angle(design: PairDesign) -> float:

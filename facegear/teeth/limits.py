@@ -2,13 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
+from math import acos, atan, cos, hypot, pi, sin
 
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.errors import GeometryError, NotConverged
 from facegear.teeth import face_gear, face_gear_fillet
 from facegear.teeth.design import PairDesign
+from facegear.teeth.family_limits import singular_quadratic
+from facegear.teeth.generated_flank import gear_flank
 
 ROUNDING = 1e-15
 """Absolute tolerance (m or rad) of roots: some thousand times less than a limit is printed with."""
@@ -45,8 +47,8 @@ class RadiusLimits:
 def radius_limits(design: PairDesign) -> RadiusLimits:
     """Compute the limits of the face width for any shaper, addendum and pressure angle.
 
-    Undercut: the singular line th = (tan psi / 2)(1 + sqrt(1 + 4 / (m2s cos psi)^2)) meets the end of the
-    shaper's involute. Pointing: the two flanks meet on the tip plane.
+    Undercut: the singular line meets the end of the shaper's involute. Pointing: the two flanks meet on the
+    tip plane.
 
     Parameters
     ----------
@@ -193,13 +195,16 @@ def undercut_radius(design: PairDesign) -> float:
     float
         m.
     """
-    base, ratio, roll = design.shaper_base_radius, design.shaper_ratio, design.shaper_tip_roll
+    flank, roll = gear_flank(design.family, -1), design.shaper_tip_roll
+    end = design.shaper_base_radius * roll
 
-    def margin(psi: float) -> float:
-        return tan(psi) / 2 * (1 + sqrt(1 + 4 / (ratio * cos(psi)) ** 2)) - roll
+    def singularity(psi: float) -> float:
+        square, linear, constant = singular_quadratic(flank, psi)
+        return float((square * end + linear) * end + constant)
 
-    psi = brentq(margin, 0.0, atan(roll), xtol=ROUNDING)
-    return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
+    psi = brentq(singularity, 0.0, atan(roll), xtol=ROUNDING)
+    point = flank.point(psi, end)
+    return hypot(float(point[0]), float(point[1]))
 
 
 def tip_plane_radius(design: PairDesign) -> float:
@@ -216,29 +221,23 @@ def tip_plane_radius(design: PairDesign) -> float:
     float
         m.
     """
-    base, ratio = design.shaper_base_radius, design.shaper_ratio
-    height = (design.shaper_lift - design.gear_tip_plane) / base
-
-    def slope(psi: float) -> float:
-        """Return the derivative of half the radius squared by psi, over base squared."""
-        outwards = (1 - height * cos(psi)) * (height - cos(psi)) / sin(psi) ** 3
-        return outwards + sin(psi) / (ratio**2 * cos(psi) ** 3)
-
-    psi = brentq(slope, 1e-4, 1.0, xtol=ROUNDING)
-    return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
+    flank, height = gear_flank(design.family, -1), design.gear_tip_plane
+    psi = brentq(lambda at: flank.growth_at_height(at, height)[2], 1e-4, 1.0, xtol=ROUNDING)
+    return flank.growth_at_height(psi, height)[1]
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
-    """Return the radii, m, at which the tip of the tooth becomes pointed."""
-    base, ratio, space = design.shaper_base_radius, design.shaper_ratio, design.shaper_half_space_angle
-    height = (design.shaper_lift - design.gear_tip_plane) / base
+    space = design.shaper_half_space_angle
+    height = (design.shaper_lift - design.gear_tip_plane) / design.shaper_base_radius
 
     def planar(psi: float) -> float:
         return psi - height * sin(psi) - space
 
+    flank = gear_flank(design.family, -1)
+
     def exact(psi: float) -> float:
-        roll = (height - cos(psi)) / sin(psi)
-        return atan(ratio * cos(psi) * (sin(psi) - roll * cos(psi))) - ratio * (psi - roll - space)
+        point = flank.point(psi, flank.growth_at_height(psi, design.gear_tip_plane)[0])
+        return float(point[0] / point[1])
 
     thickest = acos(1 / height) if height > 1 else 1e-6
     if planar(thickest) >= 0:
@@ -248,8 +247,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         )
     planar_psi = brentq(planar, thickest, pi / 2, xtol=ROUNDING)
     exact_psi = _root_near(exact, planar_psi)
-    roll = (height - cos(exact_psi)) / sin(exact_psi)
-    exact_radius = hypot(base * (sin(exact_psi) - roll * cos(exact_psi)), base / (ratio * cos(exact_psi)))
+    exact_radius = flank.growth_at_height(exact_psi, design.gear_tip_plane)[1]
     return exact_radius, design.gear_base_radius / cos(planar_psi)
 
 

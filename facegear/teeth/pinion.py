@@ -2,17 +2,15 @@
 
 Everything is for the right flank of tooth 0 in the pinion body frame (see `design`): polar angle a from the
 tooth's centre line, so x = r sin a, z = -r cos a. The left flank is the mirror image a -> -a.
-Sources: involute geometry (Litvin and Fuentes 2004, chapter 10); the trochoid is the
-envelope of the rack's tip circle, whose normals pass through the pitch point.
+Involute and trochoid are sections of the right flank and root of the family, see `helicoid`.
 """
-
-from math import cos, pi, sin, tan
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.teeth.design import PairDesign, linear, parabola
+from facegear.teeth.helicoid import PinionFlank, pinion_fillet, pinion_start
 from facegear.teeth.modifications import deviation
 
 
@@ -31,9 +29,9 @@ def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
     tuple of (...) arrays
         Radius, m, and polar angle, rad.
     """
-    roll = np.asarray(roll, dtype=float)
-    radius = design.pinion_base_radius * np.sqrt(1 + roll**2)
-    return radius, design.pinion_half_base_angle - roll + np.arctan(roll)
+    return _polar(
+        _flank(design).point(design.pinion_base_radius * np.asarray(roll, float), design.mean_radius)
+    )
 
 
 def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
@@ -51,28 +49,9 @@ def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
     tuple of (...) arrays
         Components x and z, dimensionless.
     """
-    tangent_point = design.pinion_half_base_angle - np.asarray(roll, dtype=float)
-    return np.cos(tangent_point), np.sin(tangent_point)
-
-
-def rack_tip_centre(design: PairDesign) -> tuple[float, float]:
-    """Compute the centre of the rack's tip circle.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-
-    Returns
-    -------
-    tuple[float, float]
-        Distance from the rack tooth's middle, and depth, m.
-    """
-    pinion, angle = design.pinion, design.pressure_angle
-    depth = pinion.dedendum - pinion.rack_tip_radius
-    half_thickness = pi * design.module / 4 + pinion.thinning / (2 * cos(angle))
-    lateral = half_thickness - depth * tan(angle) - pinion.rack_tip_radius / cos(angle)
-    return lateral, depth - pinion.profile_shift
+    length = design.pinion_base_radius * np.asarray(roll, float)
+    normal = _flank(design).normal(length, design.mean_radius)
+    return normal[..., 0], normal[..., 2]
 
 
 def junction_roll(design: PairDesign) -> float:
@@ -88,9 +67,7 @@ def junction_roll(design: PairDesign) -> float:
     float
         rad; negative when the rack undercuts the pinion.
     """
-    _, depth = rack_tip_centre(design)
-    angle = design.pressure_angle
-    return tan(angle) - (depth / sin(angle) + design.pinion.rack_tip_radius) / design.pinion_base_radius
+    return float(pinion_start(design.family, 1, design.mean_radius)) / design.pinion_base_radius
 
 
 def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
@@ -110,13 +87,7 @@ def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
     tuple of (...) arrays
         Radius, m, and polar angle, rad.
     """
-    gamma = np.asarray(gamma, dtype=float)
-    lateral, depth = rack_tip_centre(design)
-    centre = depth / np.tan(gamma)
-    x = centre + design.pinion.rack_tip_radius * np.cos(gamma)
-    height = design.pinion_pitch_radius - depth - design.pinion.rack_tip_radius * np.sin(gamma)
-    rack_rotation = (centre - lateral) / design.pinion_pitch_radius
-    return np.hypot(x, height), pi / design.pinion.teeth - np.arctan2(x, height) + rack_rotation
+    return _polar(pinion_fillet(design.family, 1).point(gamma, design.mean_radius))
 
 
 def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
@@ -134,11 +105,18 @@ def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]
     tuple of (...) arrays
         Components x and z, dimensionless.
     """
-    gamma = np.asarray(gamma, dtype=float)
-    lateral, depth = rack_tip_centre(design)
-    rack_rotation = (depth / np.tan(gamma) - lateral) / design.pinion_pitch_radius
-    slope = gamma - rack_rotation - pi / design.pinion.teeth
-    return np.cos(slope), -np.sin(slope)
+    normal = pinion_fillet(design.family, 1).normal(gamma, design.mean_radius)
+    return normal[..., 0], normal[..., 2]
+
+
+def _flank(design: PairDesign) -> PinionFlank:
+    """Return the right flank as a member of the family of all teeth."""
+    return PinionFlank(design.family.pinion_flanks[0])
+
+
+def _polar(points: Array) -> tuple[Array, Array]:
+    """Return radius (m) and polar angle (rad) from the tooth's centre line."""
+    return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
 
 
 def tip_half_angle(design: PairDesign) -> float:
@@ -171,7 +149,7 @@ def root_half_angle(design: PairDesign) -> float:
     float
         rad; negative when the rack's tip circles overlap.
     """
-    return rack_tip_centre(design)[0] / design.pinion_pitch_radius
+    return pinion_fillet(design.family, 1).lateral / design.pinion_pitch_radius
 
 
 def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:

@@ -9,6 +9,7 @@ from facegear.arrays import Array, Integers
 from facegear.quantities import Body
 from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
+from facegear.teeth.helicoid import PinionFlank, pinion_fillet
 from facegear.teeth.modifications import flank_end
 
 
@@ -70,11 +71,11 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
     SurfacePoints
         Points (..., 3), m.
     """
-    roll, y = np.broadcast_arrays(np.asarray(roll, float), np.asarray(y, float))
-    base, angle = design.pinion_base_radius, design.pinion_half_base_angle - roll
-    length, cosine, sine = base * roll - pinion.removed_depth(design, roll, y), np.cos(angle), np.sin(angle)
-    x, z = base * sine + length * cosine, length * sine - base * cosine
-    return SurfacePoints(_together(x, y, z), _together(cosine, 0.0, sine))
+    flank = PinionFlank(design.family.pinion_flanks[0])
+    length = design.pinion_base_radius * np.asarray(roll, float)
+    normal = flank.normal(length, y)
+    depth = pinion.removed_depth(design, roll, y)
+    return SurfacePoints(flank.point(length, y) - depth[..., None] * normal, normal)
 
 
 def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:
@@ -94,19 +95,10 @@ def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> Surface
     SurfacePoints
         Points (..., 3), m.
     """
-    gamma, y = np.broadcast_arrays(np.asarray(gamma, float), np.asarray(y, float))
-    position = pinion.cartesian(*pinion.trochoid_point(design, gamma), y)
-    nx, nz = pinion.trochoid_normal(design, gamma)
-    normal = _together(nx, 0.0, nz)
+    root = pinion_fillet(design.family, 1)
+    normal = root.normal(gamma, y)
     depth = pinion.removed_depth(design, pinion.junction_roll(design), y)
-    return SurfacePoints(position - depth[..., None] * normal, normal)
-
-
-def _together(x: Array, y: Array | float, z: Array) -> Array:
-    """Return vectors (..., 3) of their components."""
-    vectors = np.empty((*x.shape, 3))
-    vectors[..., 0], vectors[..., 1], vectors[..., 2] = x, y, z
-    return vectors
+    return SurfacePoints(root.point(gamma, y) - depth[..., None] * normal, normal)
 
 
 @dataclass(frozen=True)

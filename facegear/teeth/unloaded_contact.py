@@ -11,7 +11,9 @@ from facegear.errors import NotConverged
 from facegear.teeth.closest import PAIRS, closest
 from facegear.teeth.conjugate import exact_contact
 from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.family_contact import PinionPose, contact_line
 from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle
+from facegear.teeth.tooth_family import ToothFamily
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
@@ -247,3 +249,27 @@ def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
     drive, _ = unloaded_motion(design, phi1)
     back = drive if design == mirror_design(design) else unloaded_motion(mirror_design(design), phi1)[0]
     return float(((-back[::-1] - drive) * design.gear_base_radius).min())
+
+
+def gear_backlash(family: ToothFamily, pose: PinionPose | None = None) -> float | None:
+    """Compute the backlash of the unmodified flanks in a pose.
+
+    Parameters
+    ----------
+    family : ToothFamily
+        Pair of gears.
+    pose : PinionPose, optional
+        Where the pinion stands; the nominal place if None.
+
+    Returns
+    -------
+    float, optional
+        Arc of the gear at its pitch radius, m; None where a flank has no contact line.
+    """
+    angles = []
+    for side in (-1, 1):
+        line = contact_line(family, side, pose)
+        if line is None:
+            return None
+        angles.append(line.transmission_error * family.motion.ratio / line.base_pitch)
+    return (angles[0] - angles[1]) * family.gear_pitch_radius

@@ -43,7 +43,8 @@ MODULES = {
     ),
     "geometry": Module(
         (
-            "facegear/teeth/closed_forms.py",
+            "facegear/teeth/generated_flank.py",
+            "facegear/teeth/generated_fillet.py",
             "facegear/teeth/face_gear.py",
             "facegear/teeth/pinion.py",
         ),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from references import against, agrees
 
-from facegear.teeth import closed_forms, face_gear, face_gear_fillet
+from facegear.teeth import face_gear, face_gear_fillet
 from facegear.teeth.design import involute
 from facegear.teeth.limits import sharpest_fillet_radius
 
@@ -258,30 +258,6 @@ def test_space_width_of_the_shaper_follows_from_its_tooth_thickness(pair):
         np.pi * design.module / 2 + 2 * shift * np.tan(angle),
         absolute=1e-15,
     )
-
-
-def differences(function, at, step):
-    """Central differences of a function of an array."""
-    return (np.asarray(function(at + step)) - np.asarray(function(at - step))) / (2.0 * step)
-
-
-def test_slopes_of_the_fillet_frame_are_differences_of_its_points(pair):
-    numbers = face_gear_fillet.tip_numbers(pair(tip_rounding=0.1))
-    psi, q = np.radians([40.0, 60.0, 80.0]), 0.2 * np.array([1.0, 1.1, 1.3])
-    found = closed_forms.fillet_frame(*numbers, psi, q)
-    by_psi = differences(lambda at: closed_forms.fillet_frame(*numbers, at, q)[:3], psi, 1e-6)
-    by_q = differences(lambda at: closed_forms.fillet_frame(*numbers, psi, at)[:3], q, 1e-7)
-    np.testing.assert_allclose(found[3:6], by_psi, rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(found[6:], by_q, rtol=1e-6, atol=1e-9)
-
-
-@pytest.mark.parametrize("residual", [closed_forms.radius_at_roll, closed_forms.radius_at_height])
-def test_slopes_that_newtons_method_takes_are_differences_of_its_residual(pair, residual):
-    base, ratio, _, _ = face_gear.shaper_numbers(pair())
-    psi, at = np.radians([18.0, 25.0, 33.0]), np.array([0.3, 0.4, 0.5])
-    slope = residual(base, ratio, 0.26, at, psi)[1]
-    wanted = differences(lambda angle: residual(base, ratio, 0.26, at, angle)[0], psi, 1e-6)
-    np.testing.assert_allclose(slope, wanted, rtol=1e-7)
 
 
 def test_the_fraction_of_the_fillets_turn_leads_back_to_its_slope(pair):

@@ -8,6 +8,7 @@ from references import against, agrees
 
 from facegear.teeth import pinion
 from facegear.teeth.design import Relief
+from facegear.teeth.helicoid import pinion_fillet
 from facegear.teeth.surfaces import fillet_points
 
 
@@ -67,7 +68,8 @@ def test_thickness_on_the_pitch_circle(pair):
 def test_rack_tip_circle_never_cuts_into_the_trochoid(pair):
     """Envelope property: over the rolling motion the tip circle touches each fillet point from outside."""
     design = pair(rack_tip_radius=0.25)
-    lateral, depth = pinion.rack_tip_centre(design)
+    root = pinion_fillet(design.family, 1)
+    lateral, depth = root.lateral, root.depth
     radius, angle = pinion.trochoid_point(design, np.linspace(design.pressure_angle, np.pi / 2, 41))
     from_space = np.pi / 23 - angle
     shifts = np.linspace(-6e-3, 12e-3, 4001)[:, None]
