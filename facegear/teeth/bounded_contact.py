@@ -31,6 +31,7 @@ STENCIL = np.array(
 ACROSS, ALONG = 0.003, 0.12
 """Lengths of these steps in normal modules: both change the gap by some 1e-6 modules, far above rounding."""
 STEPS = 40
+"""Newton steps after which a search counts as failed."""
 CLOSE = 1e-5
 """Part of a step of the stencil that ends the search; an error of the place counts only squared."""
 

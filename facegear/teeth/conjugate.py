@@ -20,6 +20,7 @@ from facegear.teeth.generated_flank import GearFlank
 from facegear.teeth.tooth_family import Helicoid, RelativeMotion
 
 STEPS = 60
+"""Newton steps after which a search counts as failed."""
 GEAR_ENDS = ("gear inner end", "gear outer end")
 """Edges of a path at which another contact than that of the flanks follows."""
 

@@ -23,6 +23,7 @@ STEPS = 60
 CLOSE = 1e-10
 """Newton step (rad) that ends the search: the next one, its square, is below rounding."""
 NOMINAL = AssemblyErrors()
+"""Assembly without errors."""
 
 Vector = tuple[float, float, float]
 X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)

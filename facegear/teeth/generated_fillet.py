@@ -63,7 +63,7 @@ class GearFillet:
     """Fillet beside a flank of gear tooth 0 in the body frame, with parameters y and part.
 
     y: place (m) of the ball's centre along the pinion's axis. part: 0 at the flank, 1 at the lowest place.
-    centre_radius: of the ball's centre from the shaper's axis at y = `shaper.middle`, m.
+    centre_radius: of the ball's centre from the shaper's axis at the y of the middle of its face, m.
     """
 
     shaper: Helicoid

@@ -264,6 +264,6 @@ def test_names_in_code_letters_exist():
 
 
 def test_unit_tests_lie_in_folders_named_like_the_packages():
-    folders = {Path(path).parent for path in PATHS if path.startswith("tests/unit/")}
+    folders = {Path(path).parent for path in PATHS if path.startswith("tests/unit/") and path.endswith(".py")}
     for folder in folders:
         assert (ROOT / "facegear" / folder.relative_to("tests/unit")).is_dir(), folder

@@ -39,8 +39,8 @@ inline Position newton_step(const Derivatives& at, double tie, double arm) {
 }
 
 // Moves a position to the minimum of a convex energy, by Newton's method; false where it does not get there.
-// `energy.at(position)` returns derivatives, `energy.size(position)` a length, and `energy.arm()` the length
-// that makes one of the second coordinate.
+// Of an energy, `at(position)` returns derivatives, `size(position)` a length, and `arm()` the length that
+// makes one of the second coordinate.
 template <class Energy>
 inline bool settle(const Energy& energy, Position& position) {
     Derivatives here = energy.at(position);

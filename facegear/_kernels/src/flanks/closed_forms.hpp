@@ -1,5 +1,5 @@
-// The gear's surfaces in closed form, as in facegear/teeth/closed_forms.py (docs/explanation/geometry.md;
-// Litvin and Fuentes 2004, chapter 18). Angles in rad, lengths in m.
+// The gear's surfaces in closed form, the spur case of facegear/teeth/generated_flank.py
+// (docs/explanation/geometry.md; Litvin and Fuentes 2004, chapter 18). Angles in rad, lengths in m.
 #pragma once
 
 #include <algorithm>
