@@ -16,7 +16,7 @@ from validation.dynamics.methods import Method
 from validation.dynamics.problems import SAMPLES, ComparedResult, Problem
 
 REFERENCE = 1e-15
-"""Tolerance of the reference of regular motion, relative. Runs of heyoka.py at 1e-11 lie within 7e-12 of it."""
+"""Tolerance of the reference of regular motion, relative. heyoka.py at 1e-11 lies within 7e-12 of it."""
 REFERENCE_TOLERANCE = 1e-8
 """Tolerance of the reference of irregular motion, relative."""
 REFERENCE_PERIODS = 16_000
