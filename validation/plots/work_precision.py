@@ -28,7 +28,7 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
     columns = 2
     rows = -(-len(problems) // columns)
     with styled():
-        figure, axes = plt.subplots(rows, columns, figsize=(11, 4.2 * rows), squeeze=False)
+        figure, axes = plt.subplots(rows, columns, figsize=(7.6, 3.2 * rows), squeeze=False)
         for axis, problem in zip(axes.flat, problems, strict=False):
             chance = table.loc[table["problem"] == problem, "interval"].median()
             for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
@@ -48,13 +48,13 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
             if chance > 0.0:
                 axis.axvline(chance, color="0.8", lw=3, zorder=0)
                 axis.xaxis.set_minor_formatter(NullFormatter())
-            axis.set_title(problem, fontsize=9)
+            axis.set_title(problem, fontsize=10)
             axis.set_xlabel(
                 "error of the RMS (line: what chance leaves)"
                 if chance > 0.0
                 else "error of the tangents over the largest"
                 if "tangents" in problem
-                else "error of the deflection over the length scale"
+                else "error of the deflection, scaled"
             )
             axis.set_ylabel("time (s)")
             axis.invert_xaxis()
@@ -63,8 +63,8 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
         for axis in spare:
             axis.set_axis_off()
         if len(spare):
-            spare[0].legend(*lines, loc="center", fontsize=11)
+            spare[0].legend(*lines, loc="center", fontsize=9)
         else:
-            figure.legend(*lines, loc="outside lower center", ncols=5, fontsize=7)
+            figure.legend(*lines, loc="outside lower center", ncols=3, fontsize=9)
         figure.suptitle("Work and precision, median CPU times")
     return figure

@@ -18,7 +18,7 @@ rule dynamics_work_precision:
     threads: 2
     resources:
         mem_mb=1300,
-        runtime=30,
+        runtime=60,
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
         machine=needed(MACHINE),
