@@ -16,9 +16,9 @@ ROWS = [line.strip("| ").split(" | ") for line in TABLE.splitlines() if line.sta
 LIMITS = {"contact": 2.0, "sample_with_law": 9.0, "fresh_response": 3.0, "fresh_contact": 4.0}
 """Times that were asked for, in the unit of the point."""
 SPREAD = 0.01
-"""Part by which two measurements of one code differ; the face gear is 0.7 % beside its time with numba."""
+"""Part by which two measurements of one code differ; the face gear is 0.7 % beside its time before C++."""
 GAINS = {"example_up": 2.5, "example_down": 2.5}
-"""Gains over numba that were asked for."""
+"""Gains over the last version before C++ that were asked for."""
 
 
 def test_every_point_has_its_row_in_the_order_of_the_points():
