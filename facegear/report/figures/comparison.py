@@ -77,23 +77,26 @@ LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
 def front_figure(
     designs: pd.DataFrame, front: pd.DataFrame, winners: pd.DataFrame, objectives: list[str]
 ) -> Figure:
-    """Draw every design by its first two objectives, by generation where there is but one; front and winners.
+    """Draw every design that was computed over its first two objectives, the front, and the winners.
+
+    With a single objective it is drawn over the generation, without winners.
 
     Parameters
     ----------
     designs : pd.DataFrame
-        Table `designs` of stage search.
+        Table `designs` of stage search: error (empty if computed), generation and a column for each
+        objective.
     front : pd.DataFrame
-        Table `front` of stage search.
+        Table `front` of stage search, with the same columns of objectives.
     winners : pd.DataFrame
-        Table `winners` of stage search.
+        Table `winners` of stage search: design and `<objective>_searched`.
     objectives : list[str]
         Names of the objectives.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel.
     """
     across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
     computed_designs = designs[designs["error"] == ""]
@@ -111,7 +114,9 @@ def front_figure(
 
 
 def _axis(objective: str) -> Axis:
-    """Return the axis of an objective or of the generations."""
+    """Return the axis of an objective, by its name without a unit; the axis of `generation` has whole
+    numbers.
+    """
     return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 
@@ -121,12 +126,12 @@ def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
     Parameters
     ----------
     hypervolume : pd.DataFrame
-        Table `hypervolume` of stage search.
+        Table `hypervolume` of stage search: seed (one island each), generation and hypervolume, 0 to 1.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, %, with a curve for each seed.
     """
     curves = [
         Curve(
