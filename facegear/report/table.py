@@ -164,7 +164,9 @@ class Table:
 
     @cached_property
     def page_frame(self) -> pd.DataFrame:
-        """Columns in the order of the page: main ones first; forces in kN and stiffnesses in N/µm."""
+        """Rows with the columns in the order of the page, `main` first, in the units of ENGINEERING
+        unless `exact`.
+        """
         main_columns = [name for name in self.main if name in self.frame]
         other_columns = [name for name in self.frame.columns if name not in main_columns]
         table = self.frame[[*main_columns, *other_columns]] if main_columns else self.frame
@@ -247,7 +249,7 @@ class Table:
         Returns
         -------
         str
-            Name with the ending csv.
+            Anchor and first CAPTION_WORDS words of the caption, with the ending csv.
         """
         caption_words = re.findall(r"[a-z0-9]+", self.caption.lower())[:CAPTION_WORDS]
         return f"{chapter}-{'-'.join(caption_words)}.csv"
@@ -264,14 +266,18 @@ class Table:
         return f"data:text/csv;base64,{base64.b64encode(text.encode()).decode()}"
 
     def _largest(self, unit: str, units: Sequence[str]) -> float:
-        """The largest number of all columns with a unit; nothing for numbers without one."""
+        """Return the largest finite magnitude in all columns of floats with a unit; 0 for an empty unit
+        or no numbers. `units`: key of UNITS of each column, empty for none.
+        """
         columns = [self.page_frame.iloc[:, i] for i, ending in enumerate(units) if unit and ending == unit]
         floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
         sizes = [column[np.isfinite(column)].abs().max() for column in floats]
         return max((float(size) for size in sizes if isfinite(size)), default=0.0)
 
     def _cell(self, value: object, zero: float) -> str:
-        """Return a cell; what is missing is blank."""
+        """Return a value as text of a cell: yes or no, blank for None and nan, numbers with `digits`. A
+        float below `zero` in magnitude is written as 0.
+        """
         if isinstance(value, bool | np.bool_):
             return "yes" if value else "no"
         if value is None or value != value:
@@ -285,7 +291,9 @@ class Table:
 
 
 def _engineering(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with the units of ENGINEERING where its largest number is large enough for them."""
+    """Return a table whose columns of floats in N, N/m and W are in the larger units of ENGINEERING,
+    with new names, if the largest magnitude of all columns in that unit reaches the limit given there.
+    """
     columns_scaled, names = {}, {}
     for name in table.columns:
         ending = ending_of(str(name))
@@ -314,7 +322,7 @@ def words(name: str) -> str:
     Returns
     -------
     str
-        Words and the unit in brackets.
+        Words and the unit in brackets, such as `force as assembled (N)`.
     """
     ending = ending_of(name)
     return (
@@ -325,7 +333,9 @@ def words(name: str) -> str:
 
 
 def _longest_word(text: str) -> int:
-    """Letters of the longest part of a cell that is not broken; a unit stays with its brackets."""
+    """Return the number of letters of the longest part of a cell that a printed table does not break: a
+    word, with a unit in brackets; LONG_COLUMN for cells of more than LONG letters.
+    """
     return (
         LONG_COLUMN if len(text) > LONG else max((len(word) for word in unbroken(text).split(" ")), default=0)
     )
