@@ -40,7 +40,7 @@ class PlotlyAxes:
 
     @property
     def axes(self) -> Part:
-        """Axes of a trace."""
+        """Attributes by which a trace names its axes, `xaxis` and `yaxis`."""
         return {"xaxis": self.x, "yaxis": self.y}
 
     def hover_template(self, value: str = "") -> str:
@@ -49,12 +49,13 @@ class PlotlyAxes:
         Parameters
         ----------
         value : str
-            A third value, as its template.
+            Template of a third value, such as the colour's; empty for none.
 
         Returns
         -------
         str
-            The template.
+            Template of plotly.js with x, y and `value`, or with y alone unless `closest` or a `value`
+            is given.
         """
         x, y = (
             f"{markup(axis.name)} %{{{letter}:{digits}}} {markup(axis.unit)}"
@@ -141,12 +142,13 @@ def css_colour(colour: str, opacity: float) -> str:
 
 
 def straight(mark: Map) -> tuple[Array, Array, Array]:
-    """Return a map on straight rows and columns.
+    """Return a map with one x for each column and one y for each row; rows of other heights are
+    interpolated.
 
     Parameters
     ----------
     mark : Map
-        The map, whose columns stand straight.
+        The map; all points of a column must have one x, or ValueError is raised.
 
     Returns
     -------
@@ -167,7 +169,12 @@ def straight(mark: Map) -> tuple[Array, Array, Array]:
 
 
 def _even_rows(y: Array, values: Array) -> tuple[Array, Array]:
-    """Interpolate a field, whose rows have other heights in each column, to even heights."""
+    """Interpolate a field, whose rows have other heights in each column, linearly along each column to
+    ROWS even heights.
+
+    y, values: (rows, columns), heights and values, nan where there is none. Returns heights (ROWS,) and
+    values (ROWS, columns).
+    """
     heights = np.linspace(y.min(), y.max(), ROWS)
     even = np.full((ROWS, y.shape[1]), np.nan)
     at = heights[:, None]
