@@ -176,7 +176,7 @@ def file_path(value: object, argument: str = "path") -> Path:
     Parameters
     ----------
     value : object
-        The argument.
+        The argument, text or a path; the file need not exist.
     argument : str
         Name of the argument.
 
@@ -210,7 +210,12 @@ def require_choice(name: str, choices: Sequence[str], quantity: str) -> str:
     Returns
     -------
     str
-        The name. Raises FacegearError in one line.
+        The name.
+
+    Raises
+    ------
+    FacegearError
+        For any other name, in one line with all choices.
     """
     if name not in choices:
         raise FacegearError(f"{quantity} = {name!r}: must be one of {', '.join(choices)}")

@@ -63,5 +63,5 @@ def count_noun(number: int, singular: str, plural: str = "") -> str:
 
 
 def _without_end_zeros(text: str) -> str:
-    """Remove zeros at the end of a decimal number."""
+    """Remove zeros at the end of the fraction of a decimal number, and its point if none is left."""
     return text.rstrip("0").rstrip(".") if "." in text else text
