@@ -92,7 +92,8 @@ def parser() -> argparse.ArgumentParser:
     Returns
     -------
     Parser
-        Parser whose result holds the function of the chosen command as `command`.
+        Parser whose result holds the arguments, the command's name as `name`, and as `command` its
+        function, which takes the result and returns an exit code.
     """
     top = Parser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")

@@ -52,6 +52,7 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
         @wraps(function)
         def call_once(*arguments: P.args, **keywords: P.kwargs) -> R:
+            """Return the stored result of an equal call, or compute it."""
             result: R = compute(
                 _Call(content((arguments, keywords)), partial(function, *arguments, **keywords))
             )

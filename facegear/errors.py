@@ -92,6 +92,10 @@ class CorruptFile(FacegearError):
         The file.
     problem : str
         What is wrong with it.
+
+    Notes
+    -----
+    The text ends with the command `rebuild` that makes the file again, a forced run of Snakemake if None.
     """
 
     def __init__(self, path: str | Path, problem: str, rebuild: str | None = None) -> None:
@@ -165,7 +169,8 @@ def plain_reason(error: Exception) -> str:
     Returns
     -------
     str
-        Such as `no such file or directory`.
+        The system's words in small letters, such as `no such file or directory`; the text of any other
+        error.
     """
     return error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
 

@@ -26,7 +26,7 @@ class Progress:
         self.estimate: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
-        """Count work as done; prints at most once an interval.
+        """Count work as done and print a line, at most one an interval, and one at the end of a long run.
 
         Parameters
         ----------

@@ -204,7 +204,7 @@ def with_study_titles(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     studies : sequence of mapping
-        The config's studies.
+        The config's studies; name and title are read.
 
     Returns
     -------

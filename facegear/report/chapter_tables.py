@@ -334,7 +334,7 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     bearings : DataFrame
-        Table `bearings` of stage dynamics_response: a row a body and direction, forces in N.
+        Table `bearings` of stage dynamics_response: body, direction (REACTIONS), static_n, peak_n.
 
     Returns
     -------

@@ -115,6 +115,7 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
     target = pair["radii_mm"]["pinion_pitch"] + 1e3 * pinion["profile_shift"]
 
     def span(count: int) -> float:
+        """Return the span W_k over `count` teeth, mm."""
         involute = tan(angle) - angle
         nominal = design["module"] * cos(angle) * ((count - 0.5) * pi + teeth * involute)
         with_shift = nominal + 2.0 * pinion["profile_shift"] * sin(angle)

@@ -110,7 +110,8 @@ def found_in_words(tables: Mapping[str, pd.DataFrame]) -> str:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the report by name.
+        Tables of the report by name; K_gamma of the inputs is that of `known_k_gamma`, lost contact is
+        read from `summary`.
 
     Returns
     -------

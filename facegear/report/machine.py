@@ -71,7 +71,9 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
 
 
 def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
-    """Write a figure's line of inputs; for a figure of a publication it says who chose them.
+    """Write the line of inputs (`inputs_in_words`) below a figure.
+
+    For a figure of a publication it begins with the remark that these inputs were not disclosed.
 
     Parameters
     ----------
@@ -280,7 +282,9 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
-    """Return the text of the chapter: what the machine is, in words."""
+    """Return the chapter's text: teeth, torque per input, source of stiffness and errors, kinematics,
+    power balance; for a config without a transmission only the teeth.
+    """
     pair, transmission = values["tooth_pair"], values["transmission"]
     teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
     source = SOURCES[values["mesh_stiffness"]["source"]]
@@ -392,8 +396,8 @@ def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
-    """Return dotted keys and values below a key; a list of sections has numbered keys, any other list is one
-    value.
+    """Return dotted keys and values below a key. A list of sections has numbered keys (`[0]`); any
+    other list is one value, joined by commas.
     """
     if isinstance(value, Mapping):
         return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]

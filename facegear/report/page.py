@@ -255,7 +255,7 @@ LIST_STYLE = "margin:.2em 0;padding-left:1.2em"
 
 
 def with_omissions(page: str, omissions: Sequence[str]) -> str:
-    """Return a page with a list of what is missing at its head.
+    """Return a page with a list of what is missing at the end of its header.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def sharing_map_text(tables: Mapping[str, pd.DataFrame]) -> str:
     Parameters
     ----------
     tables : mapping of str to pd.DataFrame
-        Tables of the case by file name.
+        Tables of the case by name: sharing_map_advice, _curves and _reasons.
 
     Returns
     -------

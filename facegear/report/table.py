@@ -63,13 +63,14 @@ def unit_of(name: str) -> str:
     Returns
     -------
     str
-        The unit; empty where the name has none.
+        The unit, such as `N/µm`; empty where the name has none.
     """
     return UNITS.get(ending_of(name), "")
 
 
 def ending_of(name: str) -> str:
-    """Return the unit in a column's name.
+    """Return the unit in a column's name, as it stands there: the first key of UNITS between `_` and
+    the end or a blank.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def ending_of(name: str) -> str:
     Returns
     -------
     str
-        A key of UNITS; empty where the name has no unit.
+        A key of UNITS, such as `n_per_um`; empty where the name has no unit.
     """
     return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
 
@@ -173,7 +174,9 @@ class Table:
         return table if self.exact else _engineering(table)
 
     def on_demand(self) -> list[bool]:
-        """Return for each column whether it is shown on demand only.
+        """Return for each column of `page_frame` whether a click is needed to show it.
+
+        With more than SHOWN_COLUMNS columns these are all behind `main`, or behind SHOWN_COLUMNS.
 
         Returns
         -------
@@ -190,7 +193,7 @@ class Table:
         Returns
         -------
         list of str
-            One text a column.
+            One text for each column of `page_frame`.
         """
         return [words(str(name)) for name in self.page_frame.columns]
 
@@ -200,7 +203,7 @@ class Table:
         Returns
         -------
         list of bool
-            One flag a column.
+            One flag for each column of `page_frame`; truth values are no numbers.
         """
         return [
             pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
@@ -213,7 +216,7 @@ class Table:
         Returns
         -------
         list of list of str
-            Row by row.
+            Row by row, in the columns of `page_frame`; numbers with `digits`, missing values blank.
         """
         units = [ending_of(str(name)) for name in self.page_frame.columns]
         largest = {unit: self._largest(unit, units) for unit in set(units)}
@@ -224,7 +227,8 @@ class Table:
         ]
 
     def print_pt(self) -> float:
-        """Return the size of letters at which no word or number is broken on A4.
+        """Return the largest size of letters at which no word or number is broken on A4, estimated by
+        LETTER_WIDTH.
 
         Returns
         -------
@@ -255,7 +259,7 @@ class Table:
         return f"{chapter}-{'-'.join(caption_words)}.csv"
 
     def csv_uri(self) -> str:
-        """Return the table as csv with all its digits.
+        """Return `frame`, in its own units and with all digits, as csv.
 
         Returns
         -------
@@ -342,7 +346,7 @@ def _longest_word(text: str) -> int:
 
 
 def unbroken(text: str) -> str:
-    """Return text whose units in brackets are not broken.
+    """Return text in which the unit `(N m)` is not broken between lines.
 
     Parameters
     ----------
@@ -352,6 +356,6 @@ def unbroken(text: str) -> str:
     Returns
     -------
     str
-        The text with spaces in units that do not break.
+        The text with a space in that unit that does not break.
     """
     return re.sub(r"\(N m\)", "(N\u00a0m)", text)

@@ -213,7 +213,7 @@ def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], 
 
 
 def _margin(kelvin: float) -> str:
-    """Return the distance (K) of a temperature from its limit in words; negative beyond the limit."""
+    """Return the distance from a limit of temperature in words; `kelvin` (K) is positive below the limit."""
     return f"{format_number(abs(kelvin))} K {'below' if kelvin >= 0.0 else 'above'} the limit"
 
 
@@ -347,12 +347,13 @@ def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the report by name.
+        Tables of the report by name: column within_torques_solved of `rating`, `mesh_losses` and
+        `stress_over_speed`.
 
     Yields
     ------
     str
-        The count in words.
+        Such as `3 of 24 ratings exceed it`.
     """
     for name, singular, plural in (
         ("rating", "rating", "ratings"),

@@ -370,7 +370,7 @@ def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dic
 
 
 def boundary(quads: AnyArray) -> Integers:
-    """Return the nodes along the outline of a mesh, in order.
+    """Return the nodes along the outline of a mesh of quadrilaterals without holes, in order.
 
     Parameters
     ----------

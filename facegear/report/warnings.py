@@ -65,7 +65,7 @@ def grouped_warnings(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
     notes : sequence of str
         What a run says of its config when it starts, as `key: words`.
 
@@ -115,7 +115,7 @@ def warnings(
     tables : Mapping[str, pd.DataFrame]
         Tables of the report by name.
     pair : Mapping[str, Any] | None
-        Record of the tooth geometry, None where it was not computed.
+        Record of the tooth geometry (`geometry/pair.json`), None where it was not computed.
 
     Yields
     ------

@@ -25,7 +25,7 @@ def answer_names() -> list[str]:
     Returns
     -------
     list[str]
-        The names, sorted.
+        The names, sorted, such as `current/quick`; empty if none are installed.
     """
     folder = files("facegear.report.compare").joinpath("stored")
     if not folder.is_dir():

@@ -46,7 +46,7 @@ def causes(name: str, old: Path, new: Path) -> list[str]:
     Returns
     -------
     list[str]
-        A line for each difference.
+        A line for each difference in the manifests of the table's stage and of all stages before it.
     """
     before, after = _history(old / name), _history(new / name)
     if not before or not after:

@@ -78,19 +78,20 @@ class Table:
     bracket: Bracket | None = None
 
     def error(self, column: str, elsewhere: bool = False) -> float | None:
-        """Return the numerical error of a column.
+        """Return the numerical error of a column: that of the longest text in `errors` with which its
+        name begins.
 
         Parameters
         ----------
         column : str
             Name of the column.
         elsewhere : bool
-            Whether the row's bracket lies elsewhere in the other table.
+            Whether the row's bracket lies elsewhere in the other table; `bracket.errors` then go first.
 
         Returns
         -------
         float or None
-            The error, relative; None where none is stated.
+            The error, relative to the largest magnitude of the column; None where none is stated.
         """
         errors = {**self.errors, **self.bracket.errors} if elsewhere and self.bracket else self.errors
         fitting = [start for start in errors if column.startswith(start)]

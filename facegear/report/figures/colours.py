@@ -138,7 +138,7 @@ def round_levels(low: float, high: float, count: int = 10) -> tuple[float, ...]:
     low, high : float
         Smallest and largest value, any unit.
     count : int
-        About how many levels, dimensionless.
+        About how many steps between the levels, dimensionless.
 
     Returns
     -------

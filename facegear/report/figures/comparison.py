@@ -18,7 +18,7 @@ def curves_compared(
     Parameters
     ----------
     old, new : DataFrame
-        Tables of one series, in any unit.
+        Tables of one series with columns `x` and `y`, in any unit.
     x, y : str
         Columns across and up.
     labels : (str, str)
@@ -29,7 +29,7 @@ def curves_compared(
     Returns
     -------
     Figure
-        The figure.
+        Two panels; the difference is drawn where both tables have the same x.
     """
     joined_curves = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
     (across, across_unit), (up, unit) = (split_label(label) for label in labels)
@@ -57,7 +57,7 @@ def split_label(label: str) -> tuple[str, str]:
     Parameters
     ----------
     label : str
-        The quantity with its unit in brackets, as tables of the report name it.
+        The quantity with its unit in brackets at the end, such as `force (N)`.
 
     Returns
     -------
@@ -166,12 +166,12 @@ def search_figures(
     winners : pd.DataFrame
         Table `winners` of stage search.
     objectives : Sequence[Mapping[str, Any]]
-        Objectives of section `search` of the config.
+        Objectives of section `search` of the config; name is read.
 
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `front_figure` and `hypervolume_figure`.
     """
     names = [objective["name"] for objective in objectives]
     return front_figure(designs, front, winners, names), hypervolume_figure(hypervolume)

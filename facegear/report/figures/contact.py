@@ -152,7 +152,7 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each entry: pinion radius over the place along its axis, mm.
     """
     patterns = {name: (pattern(arrays), float(torque)) for name, (arrays, torque) in panels.items()}
     top = max(
@@ -234,7 +234,7 @@ def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `contact_curves` and `contact_pattern`.
     """
     return contact_curves(ltca), contact_pattern(pressure)
 
@@ -284,8 +284,8 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
 
 
 def _variation(closed_curve: pd.Series) -> pd.Series:
-    """Return a curve less its mean over the pitch; its last value, which repeats the first, does not count in
-    the mean.
+    """Return a curve less its mean over the pitch; the last value repeats the first, so the mean leaves
+    it out.
     """
     return closed_curve - closed_curve.iloc[:-1].mean()
 
@@ -411,7 +411,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
-    """Return the title of a panel with the radius of the contact path and the largest pressure."""
+    """Return a panel's title: `words`, contact path (mm from the gear's axis), largest pressure (MPa)."""
     pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
     return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
 

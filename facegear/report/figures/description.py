@@ -112,7 +112,7 @@ class Panel:
         Returns
         -------
         list of ColourScale
-            Each once.
+            Those of maps, levels and points that have one, each once, in the order of the marks.
         """
         values_found = [
             mark.scale for mark in self.marks if isinstance(mark, Map | Levels | Scatter) and mark.scale
@@ -143,7 +143,7 @@ class Figure:
 
     @property
     def rows(self) -> int:
-        """Number of rows of panels."""
+        """Number of rows of panels; the last one may have fewer panels."""
         return -(-len(self.panels) // self.columns)
 
     @property
@@ -245,7 +245,10 @@ def entries(panels: Sequence[Panel], keys: Sequence[Key] = ()) -> list[Key]:
 
 
 def _legend_keys(panels: Sequence[Panel]) -> Iterator[Key]:
-    """Yield the entries of the legend from the named marks of all panels."""
+    """Yield an entry of the legend for each mark that has a name and is not kept out of the legend,
+    panel by panel; names may occur twice. Curves, points and lines give a line or marker, bars and
+    areas a patch.
+    """
     for mark in (mark for panel in panels for mark in panel.marks):
         if not getattr(mark, "name", "") or not getattr(mark, "in_legend", True):
             continue
@@ -278,7 +281,7 @@ def apart(x: AnyArray, y: AnyArray) -> tuple[Array, Array]:
 
 
 def stems(at: AnyArray, heights: AnyArray) -> tuple[Array, Array]:
-    """Return lines from 0 up to heights as one curve.
+    """Return upright lines from 0 to heights as one curve, with nan between them.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ SHORT = 1.3
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Apply the project's matplotlib style.
+    """Apply STYLE, the project's matplotlib settings, inside a `with` block.
 
     Yields
     ------
@@ -76,19 +76,19 @@ def styled() -> Iterator[None]:
 
 
 def draw(figure: Figure, size: tuple[float, float] | None = None) -> MplFigure:
-    """Draw a figure.
+    """Draw a figure with matplotlib.
 
     Parameters
     ----------
     figure : Figure
-        The figure.
+        Description of the figure.
     size : tuple of float, optional
         Width and height in inches; what its panels ask for unless given.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The drawing.
+        The drawing, whose layout may still move parts (see `place_parts`); the caller closes it.
     """
     width = size[0] if size else figure.width
     with styled():
@@ -114,7 +114,8 @@ def draw(figure: Figure, size: tuple[float, float] | None = None) -> MplFigure:
 
 
 def wrap_text(text: str, width: float) -> str:
-    """Break a text into lines of 9 pt.
+    """Break a text of 9 pt into lines that fit into a width, estimated by LETTER; at least 10 letters
+    each.
 
     Parameters
     ----------
@@ -307,7 +308,9 @@ def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
 
 
 def _frame_in_space(on: Any, panel: Panel) -> None:
-    """Label and limit the three axes of a panel in space."""
+    """Label and limit the three axes of a panel in space, with one scale if `equal`, and set the view
+    (elevation and azimuth, deg).
+    """
     for letter in "xyz":
         axis = getattr(panel, letter)
         getattr(on, f"set_{letter}label")(axis.label)
@@ -354,7 +357,9 @@ def _handle(key: Key) -> Any:
 
 
 def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) -> None:
-    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel."""
+    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel that
+    has one.
+    """
     if scale := figure.shared_scale:
         mpl_figure.colorbar(_colours(scale), ax=list(axes), location="top", aspect=40, label=scale.label)
         return
@@ -366,12 +371,12 @@ def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) ->
 
 
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure to files.
+    """Write a figure to files, each at once or not at all.
 
     Parameters
     ----------
     figure : Figure
-        The figure.
+        Description of the figure.
     *paths : str or Path
         Files to write. The suffix names the format: one that matplotlib knows, or `.json` for plotly.js
         (`facegear.report.figures.draw_plotly`).

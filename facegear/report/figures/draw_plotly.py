@@ -95,14 +95,14 @@ def interactive(figure: Figure) -> dict[str, Any]:
 
 
 def write(figure: Figure, path: Path) -> None:
-    """Write a figure as a file that the page reads.
+    """Write a figure as json text of `interactive`, which the page reads.
 
     Parameters
     ----------
     figure : Figure
         The figure.
     path : Path
-        The file.
+        The json file.
     """
     text = json.dumps(interactive(figure), ensure_ascii=False, separators=(",", ":"))
     path.write_text(text, encoding="utf-8")
@@ -150,7 +150,7 @@ def _domains(figure: Figure) -> tuple[list[tuple[float, float]], list[tuple[floa
 
 
 def _lines(text: str) -> int:
-    """Count the lines of a text at the width of a narrow screen."""
+    """Count the lines of a text after `narrow`; an empty one has none."""
     return narrow(text).count("\n") + 1 if text else 0
 
 
@@ -161,7 +161,7 @@ def _below(axis: Axis) -> float:
 
 
 def narrow(text: str) -> str:
-    """Break a text into lines that the narrowest figure holds.
+    """Break a text into lines of at most LABEL letters, which the narrowest figure holds.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def _list_once(data: Sequence[Part]) -> None:
 
 
 def _title(target: PlotlyAxes) -> Part:
-    """Return plotly's annotation for the title above a panel."""
+    """Return plotly's annotation for the title above the upper left corner of a panel."""
     return {
         "xref": f"{target.x} domain",
         "yref": f"{target.y} domain",

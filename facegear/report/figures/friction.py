@@ -33,7 +33,7 @@ def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[F
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `along_path`, `over_flank` and `efficiency_map`.
     """
     return along_path(local), over_flank(local, pressure), efficiency_map(map_table)
 

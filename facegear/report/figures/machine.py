@@ -91,12 +91,13 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
     Parameters
     ----------
     layout : Layout
-        Places and roles of pinions and gears.
+        Angles, mesh radius (m) and roles of pinions and gears.
     meshes : DataFrame
-        Mean load, N, and fractions of the time on either flank of each mesh, as in table `meshes` of stage
-        hunting.
+        Mean load along the line of action, mean_n (N), and fractions of the time on either flank,
+        drive_fraction and back_fraction, of each mesh, as in table `meshes` of stage hunting.
     bearings : DataFrame or None
-        Mean forces on bearings, N, as in table `bearings` of stage hunting.
+        Mean forces on bearings, mean_x_n to mean_z_n (N), of each body, as in table `bearings` of stage
+        hunting.
 
     Returns
     -------
@@ -213,7 +214,7 @@ def _arrow(start: np.ndarray, vector: np.ndarray, colour: str) -> list[Arrow]:
 
 
 def _kilo(newtons: float) -> str:
-    """Return a force in N as text in kN."""
+    """Return a force given in N as text in kN with three digits, without the unit."""
     return format_number(newtons / 1e3)
 
 

@@ -30,7 +30,7 @@ class ColourScale:
 
     @property
     def label(self) -> str:
-        """Name and unit in brackets."""
+        """Text beside the bar of colours: name with the unit in brackets."""
         return with_unit(self.name, self.unit)
 
 

@@ -315,7 +315,9 @@ class DrawnMachine:
 
     @property
     def gears(self) -> list[str]:
-        """Names of the face gears, lower one first."""
+        """Names `lower face gear` and `upper face gear`, the lower one first, as far as `sides` holds
+        them.
+        """
         return [f"{side} face gear" for side in reversed(self.sides)]
 
     @property
@@ -329,7 +331,8 @@ class DrawnMachine:
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMachine:
     """Choose the pinions that figures show.
 
-    Of pinions with the same role and torque only the first is shown; all are shown where parts differ singly.
+    Of pinions with the same role and torque only the first is shown. All are shown if the config gives
+    values of single pinions, meshes or gears.
 
     Parameters
     ----------

@@ -133,7 +133,7 @@ def note(target: PlotlyAxes, mark: Text) -> Part:
 
 
 def key_trace(key: Key) -> Part:
-    """Return an entry of the legend that no trace gives.
+    """Return a trace without points, which puts an entry into the legend that no other trace gives.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def key_trace(key: Key) -> Part:
     Returns
     -------
     dict
-        A trace without points.
+        Trace of plotly.js.
     """
     blank = {"type": "scatter", "x": [None], "y": [None], "showlegend": True, "name": legend_text(key.name)}
     if key.area:

@@ -395,9 +395,9 @@ def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
     Parameters
     ----------
     curves : mapping of (n,) arrays
-        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+        Arrays `<body>_drive_m` of stage tooth_errors: how early the drive flank touches over a turn, m.
     orders : DataFrame
-        Table `orders` of stage tooth_errors.
+        Table `orders` of stage tooth_errors: body, order (per turn), unloaded_um, loaded_um (amplitudes).
 
     Returns
     -------
@@ -436,7 +436,7 @@ def tooth_errors_figures(curves: Arrays, orders: pd.DataFrame) -> tuple[Figure, 
     Parameters
     ----------
     curves : mapping of (n,) arrays
-        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+        Arrays `curves` of stage tooth_errors, as `tooth_error_figure` reads them.
     orders : DataFrame
         Table `orders` of stage tooth_errors.
 

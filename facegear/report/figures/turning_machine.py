@@ -442,7 +442,7 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
 
 
 def _over_speed(rows: pd.DataFrame, colour: str, name: str) -> Iterator[Curve]:
-    """Yield the force over speed of the ORDERS_SHOWN orders with the largest forces."""
+    """Yield force (N) over speed (rpm) of the ORDERS_SHOWN orders with the largest forces, lowest first."""
     peaks = rows.groupby("order")["force_n"].max().nlargest(ORDERS_SHOWN)
     for line, order in zip(LINES, np.sort(peaks.index), strict=False):
         order_rows = rows[rows["order"] == order]
