@@ -184,7 +184,8 @@ def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Rows of table `summary` of stage load_sharing with study `nominal`; empty without that table.
+        Rows of table `summary` of stage load_sharing_summary with study `nominal`; empty without that
+        table.
     """
     summary = tables.get("summary")
     return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

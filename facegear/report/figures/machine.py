@@ -330,7 +330,7 @@ def modal_figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figu
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        The figure of `mode_shapes`.
     """
     return (mode_shapes(frequencies, shapes),)
 

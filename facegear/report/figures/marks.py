@@ -251,6 +251,6 @@ def with_unit(name: str, unit: str) -> str:
     Returns
     -------
     str
-        The name with the unit in brackets.
+        The name with the unit in brackets; the name alone for an empty unit.
     """
     return f"{name} ({unit})" if unit else name

@@ -70,12 +70,12 @@ def speed_axis(sweep: pd.DataFrame) -> Axis:
 
 
 def rms_axis() -> Axis:
-    """Return the axis of the RMS without mean of a mesh deflection.
+    """Return the axis of the RMS of a mesh deflection d along the line of action, without its mean.
 
     Returns
     -------
     Axis
-        The axis, µm.
+        The axis, µm, from 0.
     """
     return Axis("RMS of d", "µm", low=0.0)
 
@@ -414,7 +414,7 @@ def dynamics_figures(
     Returns
     -------
     list of Figure
-        The figures.
+        Deflections of all pinions, then the figures in the order of SWEEP_FIGURES.
     """
     machine = drawn_machine(transmission, pinion_teeth)
     nominal = deflections(response, spectrum, machine.pinions)

@@ -212,7 +212,7 @@ def level_colours(scale: ColourScale) -> list[str]:
     Returns
     -------
     list of str
-        One colour between two levels each.
+        Colours `#rrggbb`, evenly spaced on the scale, from the lowest interval to the highest.
     """
     count = len(scale.levels) - 1
     return scale_colours(
@@ -245,7 +245,7 @@ def _identity(target: PlotlyAxes, name: str, colour: str, in_legend: bool = True
 
 
 def _curve(target: PlotlyAxes, mark: Curve) -> Iterator[Part]:
-    """Yield the trace of a curve."""
+    """Yield the trace of a curve with its line and markers."""
     mode = "+".join(["lines"] * (mark.line != "none") + ["markers"] * bool(mark.marker))
     look = _line_look(mark) if mark.line != "none" else {"color": mark.colour}
     yield {
@@ -337,14 +337,14 @@ def _filled_area(target: PlotlyAxes, x: Array, y: Array, colour: str, name: str 
 
 
 def _band(target: PlotlyAxes, mark: Band) -> Iterator[Part]:
-    """Yield the trace of the area between two curves."""
+    """Yield the area between the two curves of a band as a filled polygon."""
     x, low, high = (np.asarray(values, dtype=float) for values in (mark.x, mark.low, mark.high))
     ring = np.concatenate([x, x[::-1]]), np.concatenate([low, high[::-1]])
     yield _filled_area(target, *ring, css_colour(mark.colour, mark.opacity), mark.name)
 
 
 def _area(target: PlotlyAxes, mark: Area) -> Iterator[Part]:
-    """Yield the trace of a filled polygon."""
+    """Yield the trace of a filled polygon, with an outline if it has a colour for it."""
     area = _filled_area(target, mark.x, mark.y, css_colour(mark.colour, mark.opacity), mark.name)
     yield {**area, "line": {"width": 1, "color": mark.outline}} if mark.outline else area
 

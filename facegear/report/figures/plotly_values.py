@@ -70,7 +70,7 @@ class PlotlyAxes:
 
 
 def markup(text: str) -> str:
-    """Write plain text as plotly.js takes it.
+    """Write plain text as plotly.js takes it: HTML characters escaped, `<br>` for line ends.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def markup(text: str) -> str:
 
 
 def legend_text(name: str) -> str:
-    """Write a name as the legend of plotly.js takes it.
+    """Write a name as the legend of plotly.js takes it, in lines of at most LEGEND_LETTERS letters.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def legend_text(name: str) -> str:
 
 
 def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
-    """Round values, and put None where there is none.
+    """Round values to significant digits as a list for JSON; None stands for nan and infinite values.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
     Returns
     -------
     list of float or None
-        The numbers in one row.
+        The numbers in one row, in the order of their rows.
     """
     flat_values = np.ravel(np.asarray(values, dtype=float))
     return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in flat_values]
@@ -133,7 +133,7 @@ def css_colour(colour: str, opacity: float) -> str:
     Returns
     -------
     str
-        The colour.
+        `#rrggbb` from an opacity of 1 on, else `rgba(red,green,blue,opacity)`.
     """
     if opacity >= 1.0:
         return colour

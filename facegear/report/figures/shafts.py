@@ -171,15 +171,15 @@ def _side_view(
 
 
 def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
-    """Return the corners x, y (5,) of a closed rectangle about the axis, from its begin, length and half
-    height.
+    """Return the corners x, y (5,) of a closed rectangle about the shaft's axis, from its begin and
+    length along the axis and its half height, all in mm.
     """
     end = begin + length
     return np.array([begin, end, end, begin, begin]), half * np.array([-1.0, -1.0, 1.0, 1.0, -1.0])
 
 
 def _diameter_at(section: ShaftSection, at: float) -> float:
-    """Return the diameter (mm) of a shaft at a distance from its beginning (mm): the larger one at a step."""
+    """Return the diameter (mm) of a shaft at a distance (mm) from its inner end: the larger one at a step."""
     ends = np.cumsum([0.0, *(segment.length_mm for segment in section.segments)])
     diameters = [
         segment.diameter_mm

@@ -40,11 +40,11 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
     Parameters
     ----------
     curves : DataFrame
-        Coefficients of one study: study, point, label, kind, group, time_s, coefficient, envelope_low and
-        envelope_high.
+        A table `studies` of stage load_sharing_summary, of one study: study, point, label, kind, group,
+        time_s, coefficient, envelope_low and envelope_high.
     summary : DataFrame
-        Table `summary` of stage load_sharing: study, point, group, mean, half_width, undefined_fraction
-        and motion (class).
+        Table `summary` of stage load_sharing_summary: study, point, group, mean, half_width,
+        undefined_fraction and motion (class).
     kind : str
         Kind of group, `inputs` or `idlers`.
     title : str
@@ -117,7 +117,7 @@ def load_sharing_figures(
     studies : sequence of DataFrame
         Curves of each study, as `sharing_figure` reads them.
     summary : DataFrame
-        Table `summary` of stage load_sharing.
+        Table `summary` of stage load_sharing_summary.
     titles : sequence of str
         Title of each study.
     groups : sequence of str
@@ -259,7 +259,7 @@ def hunting_figures(
     Parameters
     ----------
     meshes, bearings, cycles, scan, sensitivity : DataFrame
-        Tables of stage hunting and its sensitivities.
+        Tables of stage hunting and its sensitivities, as the four figures read them.
     transmission : Transmission
         Section `transmission` of the config.
     teeth : ToothNumbers
@@ -268,7 +268,7 @@ def hunting_figures(
     Returns
     -------
     tuple of Figure
-        The figures.
+        Those of `layout_figure`, `hunting_figure`, `bearing_figure` and `sensitivity_figure`.
     """
     return (
         layout_figure(layout(transmission, teeth), meshes, bearings),
@@ -321,7 +321,7 @@ def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> lis
     Parameters
     ----------
     forces : DataFrame
-        Table `forces` of stage load_sharing, as `forces_figure` reads it; empty texts may be nan, as
+        Table `forces` of stage study_forces, as `forces_figure` reads it; empty texts may be nan, as
         they are read from csv.
     titles : mapping of str to str
         Title of each study by its name.

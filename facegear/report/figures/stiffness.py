@@ -116,7 +116,7 @@ def stiffness_figures(tvms: pd.DataFrame, spectrum: pd.DataFrame) -> tuple[Figur
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `stiffness_curve` and `harmonic_amplitudes`.
     """
     return stiffness_curve(tvms), harmonic_amplitudes(spectrum)
 
@@ -222,7 +222,7 @@ def mesh_law_figures(law: Arrays) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `force_lines` and `force_surface`.
     """
     return force_lines(law), force_surface(law)
 

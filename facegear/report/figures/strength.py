@@ -196,7 +196,7 @@ def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
 
 
 def _subject(row: Any) -> str:
-    """Return body, flank and method of a rating in words."""
+    """Return body, flank and method of `row`, a row of table `rating`, in words."""
     body = BODIES.get(row.body, row.body.capitalize())
     return f"{body}, {row.flank} flank, {row.method}"
 
@@ -214,7 +214,7 @@ def root_figures(passage: pd.DataFrame, along_face: pd.DataFrame) -> tuple[Figur
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `passage_figure` and `along_face_figure`.
     """
     return passage_figure(passage), along_face_figure(along_face)
 
@@ -234,7 +234,7 @@ def rating_figures(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFr
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `life` and `damage_by_bin`.
     """
     return life(rating, damage, curves), damage_by_bin(rating, damage)
 
@@ -305,6 +305,6 @@ def stress_over_speed_figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Fi
     Returns
     -------
     tuple of Figure
-        The figure.
+        The figure of `stress_over_speed`.
     """
     return (stress_over_speed(table, speed_rpm),)

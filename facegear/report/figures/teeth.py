@@ -272,7 +272,7 @@ def tooth_pair_figures(
     Returns
     -------
     tuple of Figure
-        The figures.
+        Those of `tooth_pair`, `tooth_sections` and `separation`.
     """
     return tooth_pair(pair, flanks), tooth_sections(pair, flanks), separation(pair, flanks, contact)
 
@@ -383,7 +383,7 @@ def topography_figures(points: pd.DataFrame) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `topography_figure` for `pinion` and `face_gear`.
     """
     return topography_figure(points, "pinion"), topography_figure(points, "face_gear")
 

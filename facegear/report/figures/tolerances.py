@@ -340,7 +340,7 @@ def tolerances_figures(
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `distribution_figure`, `importance_figure` and `scatter_figure`.
     """
     return (
         distribution_figure(samples, percentiles),

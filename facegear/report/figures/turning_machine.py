@@ -363,7 +363,7 @@ def gear_bodies_figures(
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `body_shapes`, `body_waves` and `body_campbell`.
     """
     campbell = body_campbell(modes, crossings, last_rpm, teeth)
     return body_shapes(modes, shapes), body_waves(modes), campbell
