@@ -71,10 +71,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """Parser that says a mistake in one line, without the usage of all options."""
+    """Parser of the command line that reports a mistake in one line, without the usage of all options."""
 
     def error(self, message: str) -> NoReturn:
-        """End the program with exit code 2.
+        """End the program with exit code 2 and one line to standard error.
 
         Parameters
         ----------
@@ -92,7 +92,8 @@ def parser() -> argparse.ArgumentParser:
     Returns
     -------
     Parser
-        Parser whose result holds the function of the chosen command as `command`.
+        Parser whose result holds the arguments, the command's name as `name`, and as `command` its
+        function, which takes the result and returns an exit code.
     """
     top = Parser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
@@ -187,7 +188,12 @@ def installed_version() -> str:
 
 
 def _new(options: argparse.Namespace) -> int:
-    """Write a config and check it; one that is refused is not written."""
+    """Write a config with the answers to QUESTIONS and the given OPTIONS, and print what to expect of
+    the machine.
+
+    Values of a REXS file count less than given ones. Refuses an existing file, and writes none if the
+    config has mistakes. Returns exit code 0.
+    """
     if options.config.exists():
         raise FacegearError(f"{options.config}: exists already; choose another name")
     if options.config.suffix not in (".yaml", ".yml"):
@@ -220,22 +226,26 @@ def _new(options: argparse.Namespace) -> int:
 
 
 def _say_if_new(folder: Path) -> None:
-    """Say that a folder does not exist yet: a misspelt one is noticed."""
+    """Print a line to standard error if a folder does not exist, so that a misspelt name is noticed."""
     if not folder.exists():
         print(f"{folder}: new folder", file=sys.stderr)
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read.
+    """Compute all results of a config and return the exit code.
 
-    Where the workflow is not at hand, as it is no part of the wheel, this process computes the same files.
+    The config is read first, so that its mistakes are not met by Snakemake's own reader. Snakemake runs
+    the workflow if it is at hand; it is no part of the wheel, so otherwise this process computes the
+    same files.
     """
     read_layers(options.config)
     return _with_snakemake(options) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(options)
 
 
 def _with_snakemake(options: argparse.Namespace) -> int:
-    """Run the workflow in a subprocess of Snakemake and return its exit code."""
+    """Run the workflow in a subprocess of Snakemake with the options of `run` and return its exit code.
+    Ctrl-C is left to Snakemake.
+    """
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
@@ -259,7 +269,8 @@ def _with_snakemake(options: argparse.Namespace) -> int:
 
 
 def _with_cache(folder: Path) -> dict[str, str]:
-    """This process's environment, with a cache in a folder of results where the home folder allows none.
+    """Return this process's environment for Snakemake; if its cache cannot be written in the home
+    folder, XDG_CACHE_HOME lies in `folder` (of results).
 
     Snakemake ends with a traceback where it cannot make its own folder there.
     """
@@ -273,7 +284,9 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
 
 def _run_here(options: argparse.Namespace) -> int:
-    """Compute the whole case in this process, without Snakemake; refuse single targets and dry runs."""
+    """Compute the whole case in this process, without Snakemake, into results/<case> of the directory;
+    refuse single targets and dry runs. Returns exit code 0.
+    """
     if options.targets or options.dry_run:
         hint = "the workflow is not part of an installed package: run this from its repository"
         raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
@@ -284,13 +297,16 @@ def _run_here(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
-    """Write the report as one html file; exit code 1 if a stage could not be computed."""
+    """Write the report of a config as one html file (<case>.html unless named), computing what is not
+    stored; return exit code 1 if a stage could not be computed.
+    """
     gearbox = facegear.load(options.config, options.results)
     path = options.output or Path(f"{gearbox.config.case}.html")
     _say_if_new(path.parent)
     failures: list[str] = []
 
     def print_stage(stage: str, summary: str) -> None:
+        """Print the line of a stage, and add its name to `failures` if it could not be computed."""
         failures.extend([stage] * summary.startswith("not computed: "))
         _print_stage(stage, summary)
 
@@ -299,7 +315,9 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _figures(options: argparse.Namespace) -> int:
-    """Draw the named figures, or all, into a folder and print where they are."""
+    """Draw the named figures, or all, as svg or png into a folder, and print the path of a single one,
+    else their number and folder. Returns exit code 0; refuses to overwrite the svg of a run.
+    """
     gearbox = facegear.load(options.config, options.results)
     folder, suffix = options.output, ".png" if options.png else ".svg"
     if folder is None:
@@ -312,12 +330,14 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _print_stage(stage: str, summary: str) -> None:
-    """Print one line for a finished stage to standard error."""
+    """Print `stage: summary` to standard error when a stage is finished."""
     print(f"{stage}: {summary}", file=sys.stderr, flush=True)
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Print mistakes and implausible values of a config; exit code 1 if a run would fail."""
+    """Print remarks on a config and, to standard error, what would fail later; return exit code 1 in
+    that case.
+    """
     result = check_config(load_config(options.config), read_yaml(options.config))
     for line in result.remarks:
         print(line)
@@ -332,14 +352,17 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _limits(options: argparse.Namespace) -> int:
-    """Print between which radii the face of a gear may lie."""
+    """Print between which radii the face of a gear may lie, from the numbers of LIMITS; return exit
+    code 0.
+    """
     print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
     return 0
 
 
 def _compare(options: argparse.Namespace) -> int:
-    """Compare two folders of results; exit code 1 if a value moved beyond its numerical error or a label
-    changed.
+    """Compare two folders of results and print what moved and why; write a page if asked to. Return
+    exit code 1 if a value moved beyond its numerical error, a label changed, or something stands in one
+    folder only.
     """
     from facegear.report.compare import answers, judge, page  # these draw, and bring matplotlib
 

@@ -16,7 +16,9 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class _Call:
-    """A call, equal to another one whose arguments have the same content."""
+    """A call of a function, as the key of its stored result: equal to another call with equal `content`
+    of its arguments. `compute` makes the call and takes no part in comparisons.
+    """
 
     content: Any
     compute: Callable[[], Any] = field(compare=False)
@@ -37,16 +39,20 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
     Returns
     -------
     Callable
-        The decorator.
+        The decorator. The decorated function takes the same arguments; all of its calls share one store.
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        """Return the function with a store of its last `size` results."""
+
         @lru_cache(maxsize=size)
         def compute(call: _Call) -> Any:
+            """Make a call; lru_cache finds its result again for an equal one."""
             return call.compute()
 
         @wraps(function)
         def call_once(*arguments: P.args, **keywords: P.kwargs) -> R:
+            """Return the stored result of an equal call, or compute it."""
             result: R = compute(
                 _Call(content((arguments, keywords)), partial(function, *arguments, **keywords))
             )
@@ -79,7 +85,10 @@ _CONTENT_ATTRIBUTE = "_content"
 
 
 def _content(value: Any) -> tuple[Any, bool]:
-    """Return the content of a value, and whether this content can never change."""
+    """Return the content of a value (see `content`), and whether it can never change, so that it may be
+    stored. Read-only arrays, tuples and frozen dataclasses of such parts, and other objects count as
+    fixed.
+    """
     if isinstance(value, np.ndarray):
         return (value.dtype.str, value.shape, value.tobytes()), _is_fixed(value)
     if isinstance(value, tuple | list):
@@ -94,15 +103,17 @@ def _content(value: Any) -> tuple[Any, bool]:
 
 
 def _is_fixed(array: Any) -> bool:
-    """Return whether an array is read-only, and each array of which it is a view."""
+    """Return whether an array is read-only, and so is each array of which it is a view."""
     while isinstance(array, np.ndarray) and not array.flags.writeable:
         array = array.base
     return array is None
 
 
 def _of_fields(value: Any, names: tuple[str, ...]) -> tuple[Any, bool]:
-    """Return the content of a dataclass from its fields, and whether it can never change; store it there if
-    so.
+    """Return the content of a dataclass from the fields `names`, and whether it can never change.
+
+    If so and the class is frozen, it is stored in the object's attribute _CONTENT_ATTRIBUTE and read
+    from there.
     """
     content = getattr(value, _CONTENT_ATTRIBUTE, None)
     if content is not None:
@@ -122,5 +133,5 @@ def _field_names(kind: Any) -> tuple[str, ...] | None:
 
 
 def _join_contents(parts: Sequence[tuple[Any, bool]]) -> tuple[tuple[Any, ...], bool]:
-    """Return the contents of several values as one tuple, and whether none of them can ever change."""
+    """Return the contents of several (content, is fixed) as one tuple, and whether all are fixed."""
     return tuple([part for part, _ in parts]), all(is_fixed for _, is_fixed in parts)

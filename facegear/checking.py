@@ -17,16 +17,16 @@ MOST_PAIRS = 4
 
 @dataclass(frozen=True)
 class CheckedConfig:
-    """A config without mistakes, and what is to be note_lines of it.
+    """Result of the check of a config without mistakes.
 
     Attributes
     ----------
     cases
-        Ids of all cases.
+        Ids of all cases: the config's own first, then those of its studies.
     failures
         What would end a stage of a run, one line each.
     remarks
-        What is worth a look: loads, implausible values, keys without effect.
+        What is worth a look: loads, implausible values, keys without effect; one line each.
     """
 
     cases: tuple[str, ...]
@@ -47,7 +47,7 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
     Returns
     -------
     CheckedConfig
-        Lines for the user.
+        Cases, failures and remarks, as lines for the user.
 
     Raises
     ------
@@ -76,8 +76,9 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
 
 
 def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:
-    """Yield findings on the pair of a case, if no earlier case has this pair and it is one of the first
-    MOST_PAIRS.
+    """Yield the findings on the tooth pair of a case, or none: if an earlier case has the same pair
+    (`_pair`), or it is not among the first MOST_PAIRS different ones. `cases`: plain values of all
+    cases by id.
     """
     pairs = list(dict.fromkeys(_pair(values) for values in cases.values()))[:MOST_PAIRS]
     pair = _pair(cases[case])
@@ -94,7 +95,10 @@ def _pair(values: Mapping[str, Any]) -> str:
 
 
 def _lines(by_case: Mapping[str, Sequence[str]], opening: str = "") -> Iterator[str]:
-    """Yield all lines on the config's own case, and the lines on its studies whose subject is new."""
+    """Yield all lines of the first case, the config's own, and those of other cases whose subject is
+    new; these end in `(case ID)`. `by_case`: lines by id of the case; `opening` stands before each
+    line.
+    """
     base = next(iter(by_case))
     subjects: set[str] = set()
     for case, lines in by_case.items():
@@ -105,5 +109,5 @@ def _lines(by_case: Mapping[str, Sequence[str]], opening: str = "") -> Iterator[
 
 
 def _subject(line: str) -> str:
-    """Key or subject at the beginning of a line, without its value."""
+    """Return the beginning of a line up to its first colon or ` = `: the key or subject without its value."""
     return line.partition(":")[0].partition(" = ")[0]

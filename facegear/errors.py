@@ -92,6 +92,10 @@ class CorruptFile(FacegearError):
         The file.
     problem : str
         What is wrong with it.
+
+    Notes
+    -----
+    The text ends with the command `rebuild` that makes the file again, a forced run of Snakemake if None.
     """
 
     def __init__(self, path: str | Path, problem: str, rebuild: str | None = None) -> None:
@@ -165,7 +169,8 @@ def plain_reason(error: Exception) -> str:
     Returns
     -------
     str
-        Such as `no such file or directory`.
+        The system's words in small letters, such as `no such file or directory`; the text of any other
+        error.
     """
     return error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
 
@@ -176,7 +181,7 @@ def file_path(value: object, argument: str = "path") -> Path:
     Parameters
     ----------
     value : object
-        The argument.
+        The argument, text or a path; the file need not exist.
     argument : str
         Name of the argument.
 
@@ -210,7 +215,12 @@ def require_choice(name: str, choices: Sequence[str], quantity: str) -> str:
     Returns
     -------
     str
-        The name. Raises FacegearError in one line.
+        The name.
+
+    Raises
+    ------
+    FacegearError
+        For any other name, in one line with all choices.
     """
     if name not in choices:
         raise FacegearError(f"{quantity} = {name!r}: must be one of {', '.join(choices)}")

@@ -7,21 +7,23 @@ PLAIN = (1e-3, 1e6)
 
 
 def format_number(value: float, digits: int = 3, *, group_digits: bool = True) -> str:
-    """Write a number with `digits` significant digits; whole numbers are written in full.
+    """Write a number with `digits` significant digits; digits before the point are never rounded to
+    zeros.
 
     Parameters
     ----------
     value : float
         The number, any unit.
     digits : int
-        Significant digits, dimensionless. Below 1e-3 and from 1e6 on a power of ten follows.
+        Significant digits, dimensionless. Below 1e-3 and from 1e6 on a power of ten follows, as in
+        `1.2e7`.
     group_digits : bool
         Whether a comma stands before every three digits of the whole part.
 
     Returns
     -------
     str
-        The number without zeros at the end of its fraction. Not a number is empty.
+        The number without zeros at the end of its fraction; empty for nan.
 
     Examples
     --------
@@ -63,5 +65,5 @@ def count_noun(number: int, singular: str, plural: str = "") -> str:
 
 
 def _without_end_zeros(text: str) -> str:
-    """Remove zeros at the end of a decimal number."""
+    """Remove zeros at the end of the fraction of a decimal number, and its point if none is left."""
     return text.rstrip("0").rstrip(".") if "." in text else text

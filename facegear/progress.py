@@ -11,9 +11,10 @@ SLOWER = 1.25
 class Progress:
     """Print `label: done/total, about N s left` every `interval` seconds.
 
-    The pace leaves out the first step, in which code is compiled; until a second one nothing is estimated.
-    The printed end follows the pace half way from line to line. The stream is standard error, which a
-    workflow stage also copies to its log.
+    `total` is the number of pieces of work. The pace leaves out the first step, in which code is
+    compiled; until a second one nothing is estimated. The printed end follows the pace half way from
+    line to line. The stream is standard error unless given, which a workflow stage also copies to its
+    log.
     """
 
     def __init__(self, label: str, total: int, interval: float = 5.0, stream: TextIO | None = None) -> None:
@@ -25,7 +26,7 @@ class Progress:
         self.estimate: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
-        """Count work as done; prints at most once an interval.
+        """Count work as done and print a line, at most one an interval, and one at the end of a long run.
 
         Parameters
         ----------
@@ -48,7 +49,12 @@ class Progress:
         )
 
     def _left(self, now: float, first: tuple[float, int]) -> float:
-        """Return the time left, s, smoothed against the estimate printed last."""
+        """Return the time left, s: the mean of remaining work over the pace since the first step and of
+        the estimate printed last less the time since then. It rises only if it exceeds that estimate by
+        the factor SLOWER.
+
+        now: present time, s; first: time, s, and count of work at the end of the first step.
+        """
         left = (now - first[0]) / (self.steps_done - first[1]) * (self.total - self.steps_done)
         if self.estimate is not None:
             then, estimate = self.estimate

@@ -65,6 +65,7 @@ def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
     """
 
     def read(word: str) -> float:
+        """Return a word as a number of this kind, or raise ArgumentTypeError."""
         try:
             return kind(word)
         except ValueError:
@@ -74,23 +75,25 @@ def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
 
 
 def flag(name: str) -> str:
-    """Return the option of an argument.
+    """Return the option of the command line for an argument.
 
     Parameters
     ----------
     name : str
-        Name of the argument.
+        Name of the argument, such as `pinion_teeth`.
 
     Returns
     -------
     str
-        The option.
+        The option, such as `--pinion-teeth`.
     """
     return f"--{name.replace('_', '-')}"
 
 
 def complete_answers(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values of QUESTIONS: as given, else as answered at the terminal, else by default.
+    """Return values of all QUESTIONS: as given, else as answered at the terminal, else by default.
+
+    Questions are asked only if one without a default is not given; then all that are not given are asked.
 
     Parameters
     ----------
@@ -100,8 +103,12 @@ def complete_answers(options: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Value by name, in the unit of its question. Raises FacegearError where there is neither, or an answer
-        is no number.
+        Value by name, in the unit of its question.
+
+    Raises
+    ------
+    FacegearError
+        If a value without a default is not given and there is no terminal, or an answer is no number.
     """
     missing_names = [name for name in QUESTIONS if options.get(name) is None]
     needed_flags = [flag(name) for name in missing_names if QUESTIONS[name][1] is None]
@@ -121,12 +128,19 @@ def ask_question(name: str) -> float:
     Parameters
     ----------
     name : str
-        Name of the question.
+        Name of the question, a key of QUESTIONS.
 
     Returns
     -------
     float
         The answer, in the unit of the question.
+
+    Raises
+    ------
+    FacegearError
+        If Ctrl-D ends the input.
+    ConfigError
+        For an answer that is no number, or an empty one to a question without default.
     """
     kind, default, text = QUESTIONS[name]
     try:
@@ -144,5 +158,7 @@ def ask_question(name: str) -> float:
 
 
 def _or_default(name: str, answers: Mapping[str, Any]) -> Any:
-    """Return the answer to a question, or its default."""
+    """Return the value of a question by its name in `answers`; its default, which may be None, if that
+    is None.
+    """
     return QUESTIONS[name][1] if answers.get(name) is None else answers[name]

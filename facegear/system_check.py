@@ -20,23 +20,24 @@ PACKAGES = {
 
 
 def missing_packages() -> list[str]:
-    """Debian packages whose library does not load on this machine.
+    """Return the Debian packages of PACKAGES whose shared library does not load on this machine.
 
     Returns
     -------
     list of str
-        Names of the packages.
+        Names of the packages, empty if all libraries load.
     """
     return [package for library, package in PACKAGES.items() if not _loads(library)]
 
 
 def kernels_origin() -> str:
-    """Return a sentence that says which compiler built the kernels.
+    """Return one or two sentences on which compiler built the compiled kernels.
 
     Returns
     -------
     str
-        Compiler, level of instructions, and what builds the kernels sooner where zig built them.
+        Compiler and level of processor instructions that are used here; if zig built the kernels, which
+        compilers build them faster.
     """
     from facegear import _kernels  # where they do not load, `main` says so in one line
 
@@ -52,7 +53,7 @@ def main() -> int:
     Returns
     -------
     int
-        0 if gmsh and the kernels load.
+        Exit code: 0 if gmsh and the kernels load, else 1.
     """
     try:
         import gmsh  # noqa: F401 - what is checked here
@@ -78,7 +79,7 @@ def _complain(line: str) -> int:
 
 
 def _loads(library: str) -> bool:
-    """Whether a shared library can be loaded."""
+    """Return whether a shared library is found and can be loaded, by its name without `lib` and ending."""
     name = ctypes.util.find_library(library)
     if name is None:
         return False

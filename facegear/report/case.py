@@ -83,7 +83,7 @@ def case_report(
     pictures : mapping of str to Path
         Stored figures (svg) by name.
     manifests : sequence of mappings
-        Manifests of all rules.
+        Manifests of all stages (rules): rule, summary, seconds, made_at, code, versions.
     pair : mapping or None
         Record of the tooth geometry, if it was computed.
     view : View or None
@@ -150,7 +150,7 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
     values : mapping
         Plain values of the config.
     manifests : sequence of mapping
-        Records of the stages; of each its versions.
+        Manifests of the stages; `versions` of each is read.
 
     Returns
     -------
@@ -174,12 +174,14 @@ def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     frequencies : pd.DataFrame
-        Table `frequencies` of stage modal.
+        Table `frequencies` of stage modal, in the order of order, with multiplicity, frequency_hz,
+        symbols and class.
 
     Returns
     -------
     pd.DataFrame
-        A row for each frequency: modes (with how many share it), frequency_hz, what moves, class.
+        A row for each frequency: modes (first to last), times (how many share it), frequency_hz,
+        what_moves, class; all of a frequency are consecutive.
     """
     rows, first = [], 0
     while first < len(frequencies):
@@ -202,7 +204,7 @@ def with_study_titles(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     studies : sequence of mapping
-        The config's studies.
+        The config's studies; name and title are read.
 
     Returns
     -------
@@ -217,7 +219,9 @@ def with_study_titles(
 
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
-    """Return the tables of a chapter."""
+    """Return the tables of the chapter with a title of CHAPTERS, as far as they were computed; none for
+    any other chapter. `tables`: tables of the case by name; `speed_rpm`: nominal speed of the pinions.
+    """
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], main=BY_TORQUE_SHOWN)]
     if title == "Root stress" and "root_stress" in tables:
@@ -281,7 +285,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
 
 
 def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
-    """Return the chapter on what made each file."""
+    """Return the chapter with a table of all stages but those of figures (rule, summary, seconds,
+    made_at, code), and one of the versions of libraries, both from the manifests.
+    """
     columns = ["rule", "summary", "seconds", "made_at", "code"]
     stage_manifests = [manifest for manifest in manifests if not manifest["rule"].endswith("_figures")]
     rows = [{name: manifest.get(name) for name in columns} for manifest in stage_manifests]

@@ -164,12 +164,12 @@ def rating_and_safety_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the case by name.
+        Tables of the case by name; `safety` and `rating` are read, and `duty_loads` if it is there.
 
     Returns
     -------
     list of Table
-        The tables in the order of the page.
+        Safety, ratings, and for each bin the load of the largest force and all loads.
     """
     safety_table = tables["safety"].dropna(axis="columns", how="all")
     report_tables = [
@@ -189,7 +189,8 @@ def friction_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the case by name.
+        Tables of the case by name: `friction` and `limits`; if there, `machine_loss` with `mesh_losses`
+        and `body_heat`, and `friction_studies`.
 
     Returns
     -------
@@ -231,7 +232,7 @@ def bins_in_words(rows: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     rows : DataFrame
-        Table with the column `bin`: a bin of the duty cycle, 0 or -1.
+        Table with the column `bin`: a bin of the duty cycle from 1, 0 (nominal load) or -1 (all bins).
 
     Returns
     -------
@@ -248,7 +249,8 @@ def stress_over_speed_tables(tables: Mapping[str, pd.DataFrame], speed_rpm: floa
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the case by name.
+        Tables of the case by name; of `stress_over_speed` the columns speed_rpm, motion and
+        largest_force_n are read.
     speed_rpm : float
         Nominal speed, rpm.
 
@@ -267,17 +269,20 @@ def stress_over_speed_tables(tables: Mapping[str, pd.DataFrame], speed_rpm: floa
 
 
 def jump_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    """Jumps with the mode that moves most; a linear resonance beside it only where the jump is near it.
+    """Return the table of jumps, each with the mode that moves most, and the linear resonance if it is
+    near.
+
+    Near: the speed before the jump is within NEAR_RESONANCE of `resonance_rpm`, relative to that.
 
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the case by name.
+        Tables of the case by name; `jumps` of stage dynamics_sweep is read.
 
     Returns
     -------
     list of Table
-        The tables in the order of the page.
+        One table; none without `jumps`.
     """
     if "jumps" not in tables:
         return []
@@ -299,12 +304,13 @@ def scorecard_chapter(frame: pd.DataFrame) -> Chapter:
     Parameters
     ----------
     frame : DataFrame
-        Table `scorecard`: a row a number or statement of the paper.
+        Table `scorecard`: a row a number or statement of the paper, with counted, where, claim, paper,
+        shown, unit, verdict and reason.
 
     Returns
     -------
     Chapter
-        The chapter.
+        The number of counted rows by verdict, and all rows.
     """
     text = (
         "Every number and statement of the paper beside ours; a row that differs says why. Numbers that the "
@@ -328,7 +334,7 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     bearings : DataFrame
-        Table `bearings` of stage dynamics_response: a row a body and direction, forces in N.
+        Table `bearings` of stage dynamics_response: body, direction (REACTIONS), static_n, peak_n.
 
     Returns
     -------

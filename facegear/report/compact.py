@@ -41,7 +41,8 @@ def machine_picture(values: Mapping[str, Any], meshes: pd.DataFrame | None) -> C
     values : mapping
         Plain values of the config.
     meshes : DataFrame or None
-        Table `meshes` of stage ratings.
+        Table `meshes` of stage ratings: mesh, force_n, flank (a force of flank `back` points the other
+        way).
 
     Returns
     -------
@@ -99,7 +100,8 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
     arrays : mapping or None
         Arrays of the contact analysis (PRESSURE_ARRAYS).
     torque : float or None
-        Torque of a mesh in N m; the nearest one solved that is not smaller is shown, else the largest.
+        Torque of a mesh in N m; the smallest one solved that is not smaller (within 0.1 %) is shown,
+        else the largest.
 
     Returns
     -------
@@ -144,7 +146,12 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
 
 
 def _cells(x: Array, y: Array, share: Array) -> list[str]:
-    """Return a path for each level of `share` (steps, planes), 0 to 1, between corners at x and y (px)."""
+    """Return a svg path for each level of colour: the cells of a grid whose mean `share` falls into
+    that level.
+
+    share: (steps, planes), 0 to 1, nan where unknown; a cell needs two known corners. x, y: places
+    (steps, planes) of the same points, px.
+    """
     corners = np.stack([share[:-1, :-1], share[1:, :-1], share[1:, 1:], share[:-1, 1:]])
     is_known = np.isfinite(corners)
     mean = np.where(is_known, corners, 0.0).sum(axis=0) / np.maximum(is_known.sum(axis=0), 1)
@@ -167,12 +174,14 @@ def _cells(x: Array, y: Array, share: Array) -> list[str]:
 
 
 def _ends(points: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
-    """Return first and last of points that lie on a line across the flank."""
+    """Return the first and last point (x, y), px: all between lie on a straight line across the flank."""
     return [points[0], points[-1]]
 
 
 def _scale(left: float, top: float, width: float, largest: float, edges: bool) -> list[str]:
-    """Return the scale of pressures up to `largest` (MPa) and the mark of edges."""
+    """Return the svg elements of the pressure scale from 0 to `largest` (MPa) at `left`, `top` in a row
+    of `width`, px, and of the mark of edges if there are any.
+    """
     bar = 0.34 * width
     step = bar / len(LEVELS)
     parts = [
@@ -192,7 +201,8 @@ def sweep_picture(sweep: pd.DataFrame | None, jumps: pd.DataFrame | None, speed_
     Parameters
     ----------
     sweep, jumps : DataFrame or None
-        Tables of stage dynamics_sweep.
+        Tables of stage dynamics_sweep: direction, speed_rpm, quantity, body_or_mesh, value; and
+        direction, speed_after_rpm.
     speed_rpm : float
         Nominal speed of the pinions, rpm.
 
@@ -238,12 +248,12 @@ def error_picture(ltca: pd.DataFrame | None) -> Compact | None:
     Parameters
     ----------
     ltca : DataFrame or None
-        Table of the contact analysis, a row a torque and position.
+        Table `ltca` of stage contact: torque_n_m, position (pitches), ste_um.
 
     Returns
     -------
     Compact or None
-        The picture; None without a contact analysis.
+        The picture, µm; None without a contact analysis or with a single position.
     """
     if ltca is None or ltca["position"].nunique() < 2:
         return None
@@ -279,7 +289,9 @@ class _Axes(NamedTuple):
 
     @classmethod
     def around(cls, curves: Any, x_name: str, y_name: str, also: float | None) -> "_Axes":
-        """Return axes that hold all curves, each (n, 2), and the abscissa `also`."""
+        """Return axes that hold all `curves`, each (n, 2) of abscissa and ordinate, and the abscissa
+        `also` if given. The ordinates start at 0 or a round number below, and end at a round number.
+        """
         every = np.vstack(list(curves))
         x = np.append(every[:, 0], [] if also is None else also)
         low, high = min(0.0, every[:, 1].min()), every[:, 1].max()
@@ -288,17 +300,17 @@ class _Axes(NamedTuple):
         return cls((float(x.min()), float(x.max())), y_range, x_name, y_name)
 
     def x(self, value: float) -> float:
-        """Return the abscissa of a value, px."""
+        """Return the place of an abscissa on the drawing, px from the left."""
         low, high = self.x_range
         return self.left + (value - low) / max(high - low, 1e-300) * (self.right - self.left)
 
     def y(self, value: float) -> float:
-        """Return the ordinate of a value, px."""
+        """Return the place of an ordinate on the drawing, px from the top."""
         low, high = self.y_range
         return self.bottom - (value - low) / max(high - low, 1e-300) * (self.bottom - self.top)
 
     def frame(self) -> list[str]:
-        """Return grid, ticks and names."""
+        """Return grid lines, numbers and names of both axes as svg elements."""
         parts = []
         for value in _ticks(*self.y_range):
             y = self.y(value)
@@ -313,7 +325,9 @@ class _Axes(NamedTuple):
         return parts
 
     def legend(self, names: Mapping[str, str]) -> list[str]:
-        """Return the names of curves above the axes, each with a piece of its line."""
+        """Return the names of curves above the axes as svg elements, each with a piece of its line.
+        `names`: text by the class of the curve in `page.css` (`up` or `down`).
+        """
         parts, x = [], self.left + 10
         for direction, name in names.items():
             parts.append(f'<path class="curve {direction}" d="M{x} {self.top - 13}h16"/>')
@@ -322,13 +336,15 @@ class _Axes(NamedTuple):
         return parts
 
     def path(self, curve: Array) -> str:
-        """Return the path of a curve (n, 2); of a long one every few points with both extremes between."""
+        """Return the svg path of a curve (n, 2) in units of the axes; more than POINTS points are thinned."""
         points = curve if len(curve) <= POINTS else _thinned(curve)
         return "M" + _points([(self.x(a), self.y(b)) for a, b in points])
 
 
 def _thinned(curve: Array) -> Array:
-    """Return of each part of a curve (n, 2) the smallest and largest point, in order."""
+    """Return about POINTS points of a curve (n, 2): of each of POINTS / 2 equal parts the ones with the
+    smallest and the largest ordinate, in their order.
+    """
     indices: list[int] = []
     for part in np.array_split(np.arange(len(curve)), POINTS // 2):
         values = curve[part, 1]
@@ -337,37 +353,43 @@ def _thinned(curve: Array) -> Array:
 
 
 def _step(span: float) -> float:
-    """Return a round distance of ticks, of which 2 to 5 fill a span."""
+    """Return a distance of ticks of 1, 2, 5 or 10 times a power of ten, at least a quarter of `span`."""
     rough = max(span, 1e-12) / 4.0
     power = 10.0 ** floor(log10(rough))
     return next((factor * power for factor in (1.0, 2.0, 5.0) if factor * power >= rough), 10.0 * power)
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Return round numbers between two ends of an axis."""
+    """Return the multiples of a round step from `low` to `high`."""
     step = _step(high - low)
     return [step * k for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
 
 
 def _points(points: Sequence[Any]) -> str:
-    """Return points as text for a polyline of a svg."""
+    """Return points (x, y), px, as text `x,y x,y` with one decimal, for a polyline of a svg."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
 
 
 def _text(at: Sequence[float] | Array, words: str, anchor: str) -> str:
-    """Return a text of a svg at a point with its anchor."""
+    """Return a svg text at a point (x, y), px; `anchor` (start, middle, end) is the part of it that
+    stands there.
+    """
     return f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{escape(words)}</text>'
 
 
 def _label(at: Array, outwards: Array, lines: Sequence[str]) -> str:
-    """Return lines of text beside a point, on the side that `outwards` shows."""
+    """Return lines of svg text beside a point (2,), px, on the side to which the unit vector `outwards`
+    points (y downwards).
+    """
     anchor = "middle" if abs(outwards[0]) < 0.35 else "start" if outwards[0] > 0.0 else "end"
     first = at[1] + (-12 if outwards[1] < -0.35 else 9 if outwards[1] > 0.35 else -2)
     return "".join(_text((at[0], first + 13 * k), line, anchor) for k, line in enumerate(lines))
 
 
 def _arrow(start: Array, end: Array) -> str:
-    """Return an arrow with a head of at most half its length; nothing where it is shorter than a px."""
+    """Return the svg elements of an arrow between two points (2,), px, with a head of at most half its
+    length; empty if it is shorter than 1 px.
+    """
     length = hypot(*(end - start))
     if length < 1.0:
         return ""
@@ -379,6 +401,6 @@ def _arrow(start: Array, end: Array) -> str:
 
 
 def _svg(parts: Sequence[str], title: str) -> str:
-    """Return a svg of its parts with a title for screen readers."""
+    """Return a svg of WIDTH by HEIGHT from its elements, with a title for screen readers."""
     size = f'viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
     return f'<svg class="compact" role="img" aria-label="{escape(title)}" {size}>{"".join(parts)}</svg>'

@@ -75,12 +75,13 @@ def pinion_tooth_thickness(pair: Mapping[str, Any]) -> float:
     Parameters
     ----------
     pair : mapping
-        Record of the tooth geometry.
+        Record of the tooth geometry (`geometry/pair.json`), in m below `design_si`.
 
     Returns
     -------
     float
-        Length of the arc, mm: m (pi / 2 + 2 x tan alpha) less the thinning, which is given along the normal.
+        Length of the arc, mm: m (pi / 2 + 2 x tan alpha) less thinning / cos alpha, as the thinning is
+        given along the normal. x: profile shift coefficient, alpha: pressure angle, m: module.
     """
     design, pinion = pair["design_si"], pair["design_si"]["pinion"]
     angle = design["pressure_angle"]
@@ -89,12 +90,15 @@ def pinion_tooth_thickness(pair: Mapping[str, Any]) -> float:
 
 
 def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
-    """Compute the span over the teeth at which its anvils touch nearest to the pitch circle.
+    """Compute the span over the number of teeth for which its anvils touch nearest to the shifted pitch
+    circle.
+
+    That has the pitch radius plus the profile shift. Numbers of teeth run from 2 to half of all.
 
     Parameters
     ----------
     pair : mapping
-        Record of the tooth geometry.
+        Record of the tooth geometry (`geometry/pair.json`), in m below `design_si`.
 
     Returns
     -------
@@ -111,6 +115,7 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
     target = pair["radii_mm"]["pinion_pitch"] + 1e3 * pinion["profile_shift"]
 
     def span(count: int) -> float:
+        """Return the span W_k over `count` teeth, mm."""
         involute = tan(angle) - angle
         nominal = design["module"] * cos(angle) * ((count - 0.5) * pi + teeth * involute)
         with_shift = nominal + 2.0 * pinion["profile_shift"] * sin(angle)
@@ -131,14 +136,18 @@ ROUNDING_OF_POWER = 1e-9
 
 
 def machine_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
-    """Return numbers of the machine at rest, with the torques of what takes most power.
+    """Return the numbers of table `ratings`, with the torque of the output: the bodies that take most
+    power.
 
-    That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
+    If gears take most, output_torque_n_m is the largest magnitude of a gear's torque. If pinions do,
+    output_pinions_n_m holds the different magnitudes of theirs, speed_ratio is 1 and gear_ratio is left
+    out, as no gear is the output then.
 
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the report by name.
+        Tables of the report by name: `ratings` (quantity, value) and `bodies` (role, torque_n_m,
+        power_kw; power taken out is negative).
 
     Returns
     -------
@@ -165,7 +174,7 @@ def machine_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
 
 
 def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Return the summary of load sharing of the machine itself.
+    """Return the load sharing of the machine itself at its nominal speed, without its studies.
 
     Parameters
     ----------
@@ -175,7 +184,8 @@ def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Rows of table `summary`; empty where there is none.
+        Rows of table `summary` of stage load_sharing_summary with study `nominal`; empty without that
+        table.
     """
     summary = tables.get("summary")
     return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

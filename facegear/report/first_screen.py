@@ -72,7 +72,7 @@ def first_screen(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
     pressure : mapping or None
         Arrays of the contact analysis (PRESSURE_ARRAYS), where it was made.
     notes : sequence of str
@@ -81,7 +81,7 @@ def first_screen(
     Returns
     -------
     FirstScreen
-        Only what is known.
+        At most MOST_KEYS key numbers, three pictures, verdicts and warnings, as far as they are known.
     """
     judgements = verdicts(values, tables, pair)
     colour, status, sentence = status_line(judgements, found_in_words(tables))
@@ -110,7 +110,8 @@ def found_in_words(tables: Mapping[str, pd.DataFrame]) -> str:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the report by name.
+        Tables of the report by name; K_gamma of the inputs is that of `known_k_gamma`, lost contact is
+        read from `summary`.
 
     Returns
     -------
@@ -147,7 +148,7 @@ def key_cards(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
 
     Yields
     ------
@@ -176,7 +177,9 @@ def key_cards(
 
 
 def _speed_and_torque(values: Mapping[str, Any]) -> Iterator[Key]:
-    """Yield the nominal load of the machine."""
+    """Yield the nominal pinion speed, rpm, with the torque of the inputs, N m (their number if torques
+    differ); none without a transmission. A pinion's own torque_n_m goes before torque.per_input_n_m.
+    """
     transmission = values["transmission"]
     if transmission is None:
         return
@@ -196,7 +199,9 @@ def _speed_and_torque(values: Mapping[str, Any]) -> Iterator[Key]:
 
 
 def _powers(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the power in and out, the latter less the friction loss where it is known."""
+    """Yield the power in and out, kW, of tables `ratings` and `bodies`; the latter less the friction
+    loss at the nominal load (table `machine_loss`, bin 0) where that is known.
+    """
     numbers = machine_numbers(tables)
     if "power_in_kw" not in numbers:
         return
@@ -212,7 +217,9 @@ def _powers(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
 
 
 def _lowest_safety(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the safety that is nearest to what is required, with its flank."""
+    """Yield the smallest safety over required safety of table `rating`, with failure and flank; red
+    below 1.
+    """
     if "rating" not in tables or tables["rating"].empty:
         return
     row = nearest_rating(tables["rating"])
@@ -227,7 +234,9 @@ def _lowest_safety(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
 
 
 def _k_gamma(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the mesh load factor of each kind of group."""
+    """Yield the largest load sharing factor K_gamma of each kind of group; red if any group exceeds
+    `load_sharing.required_k_gamma`.
+    """
     groups = known_k_gamma(tables)
     if groups.empty:
         return
@@ -248,7 +257,10 @@ def _k_gamma(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> I
 
 
 def _first_resonance(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the lowest speed of the sweep's range at which the mesh frequency meets a natural frequency."""
+    """Yield the lowest pinion speed in the sweep's range, rpm, at which the mesh frequency (teeth *
+    speed / 60) is a natural frequency of table `frequencies`, with the mode; none if there is no such
+    speed.
+    """
     if "frequencies" not in tables:
         return
     sweep, teeth = values["dynamics"]["sweep"], values["tooth_pair"]["pinion_teeth"]
@@ -268,7 +280,9 @@ def _first_resonance(values: Mapping[str, Any], tables: Mapping[str, pd.DataFram
 
 
 def _peak_force(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the largest mesh force at the nominal speed, of the most complete table that is there."""
+    """Yield the largest mesh force at the nominal speed, kN, with its mesh, from table
+    `dynamic_stress`, else from `forces`; none without both.
+    """
     for name in ("dynamic_stress", "forces"):
         table = tables.get(name, pd.DataFrame())
         column = next((force for force in ("largest_force_n", "largest_n") if force in table), None)
@@ -283,7 +297,10 @@ def _peak_force(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -
 
 
 def _jumps(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield the jump of the sweep that is nearest to the nominal speed, or that there is none."""
+    """Yield the speed after the jump of table `jumps` that is nearest to the nominal speed, with its
+    distance in percent and the number of jumps, or that there is none. Irregular motion that begins or
+    ends is no jump here.
+    """
     if "jumps" not in tables:
         return
     jumps, speed = tables["jumps"], values["dynamics"]["speed_rpm"]
@@ -299,7 +316,9 @@ def _jumps(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Ite
 
 
 def _by_torque(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
-    """Yield what the contact analysis found at its largest torque."""
+    """Yield mean mesh stiffness (N/µm), peak-to-peak transmission error (µm) and pressure (MPa) at the
+    largest torque of table `by_torque`.
+    """
     if "by_torque" not in tables:
         return
     row = tables["by_torque"].iloc[tables["by_torque"]["torque_n_m"].argmax()]

@@ -19,12 +19,13 @@ SOURCES = {
 
 
 def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
-    """Describe the inputs.
+    """Describe the inputs that a publication may leave out: torques, errors, stiffness, kinematics,
+    teeth.
 
     Parameters
     ----------
     values : Mapping[str, Any]
-        Plain values of the config.
+        Plain values of the config, with section `transmission`.
 
     Returns
     -------
@@ -70,7 +71,9 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
 
 
 def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
-    """Write a figure's line of inputs; for a figure of a publication it says who chose them.
+    """Write the line of inputs (`inputs_in_words`) below a figure.
+
+    For a figure of a publication it begins with the remark that these inputs were not disclosed.
 
     Parameters
     ----------
@@ -89,7 +92,9 @@ def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
 
 
 def _phasing(phasing: str | Mapping[str, float]) -> str:
-    """Say in words how the transmission errors of the meshes lag."""
+    """Say in words how the transmission errors of the meshes lag: `in_step`, `mesh`, or lags in mesh
+    periods by mesh.
+    """
     if isinstance(phasing, str):
         return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]
     lags = ", ".join(f"{mesh} {lag:g}" for mesh, lag in phasing.items())
@@ -97,12 +102,14 @@ def _phasing(phasing: str | Mapping[str, float]) -> str:
 
 
 def _variation(factor: float) -> str:
-    """Say in words by which factor the stiffness varies more than computed; empty for 1."""
+    """Say by which factor the variation of the stiffness about its mean is multiplied; empty for 1."""
     return "" if factor == 1.0 else f", {factor:.3g} times its variation"
 
 
 def _kinematics(transmission: Mapping[str, Any]) -> str:
-    """Say in words which kinematics meshes have."""
+    """Say whether meshes are geometric or as printed, with the given mesh radius (mm). `transmission`:
+    that section of the config.
+    """
     radius = transmission["face_gear"]["mesh_radius_mm"]
     return "meshes geometric" if radius is None else f"meshes as printed, mesh radius {radius:g} mm"
 
@@ -167,11 +174,11 @@ def machine_chapter(
     tables : mapping of str to DataFrame
         Tables of the report by name; may hold ratings, bodies, meshes.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
     pictures : sequence of Picture
         Drawings of the machine.
     base : Base or None
-        The config file that the case's own extends.
+        The config file that the case's own extends; the table of the config marks what differs from it.
 
     Returns
     -------
@@ -202,12 +209,12 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
 
     Returns
     -------
     DataFrame
-        Columns quantity, value and unit.
+        Columns quantity, value and unit, in the order of NUMBERS.
     """
     numbers_by_name = _less_friction(_signed_numbers(tables) | machine_numbers(tables)) | (
         {} if pair is None else _teeth(pair)
@@ -222,7 +229,10 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
 
 
 def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers with the power out without and with the friction loss, kW, where both are known."""
+    """Return numbers by name with power_out_kw replaced by the power out without friction and less the
+    friction loss (power in * loss_percent / 100), kW, if power in, power out and loss are known; else
+    unchanged.
+    """
     if not {"loss_percent", "power_in_kw", "power_out_kw"} <= numbers.keys():
         return dict(numbers)
     without = numbers["power_out_kw"]
@@ -235,7 +245,9 @@ def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
-    """Return safeties, load sharing and dynamic factors and loss by name, where they were computed."""
+    """Return by name, as far as computed: bending_safety and pitting_safety (smallest), k_gamma and k_v
+    (largest of the running machine) and loss_percent (at the nominal load, bin 0).
+    """
     numbers: dict[str, float] = {}
     if "rating" in tables:
         smallest = tables["rating"].groupby("failure")["safety"].min()
@@ -250,7 +262,10 @@ def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
 
 
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the key numbers of the teeth from the record of their geometry."""
+    """Return the key numbers of the teeth by name, in the units of the names, from the record of their
+    geometry. path_shift_mm is the mean radius of the unloaded contact path less the nominal one, 0
+    within 0.001 mm.
+    """
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
     path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
@@ -267,7 +282,9 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
-    """Return the text of the chapter: what the machine is, in words."""
+    """Return the chapter's text: teeth, torque per input, source of stiffness and errors, kinematics,
+    power balance; for a config without a transmission only the teeth.
+    """
     pair, transmission = values["tooth_pair"], values["transmission"]
     teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
     source = SOURCES[values["mesh_stiffness"]["source"]]
@@ -298,7 +315,10 @@ def _materials(values: Mapping[str, Any]) -> str:
 
 
 def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
-    """State the size of e(t) from contact."""
+    """State the peak-to-peak value of the unloaded transmission error e(t) from contact, µm, and what
+    its kept harmonics leave out (table `harmonics`); empty if e(t) is given. `section`:
+    transmission.transmission_error.
+    """
     if section["source"] == "given" or "harmonics" not in tables:
         return ""
     table = tables["harmonics"]
@@ -315,7 +335,10 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
 
 
 def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
-    """State whether the powers are in balance, or by how much equation (13) as printed misses it."""
+    """State whether power in equals power out within ROUNDING_OF_POWER, and the friction loss, or by
+    how many percent of the larger they differ with equation (13) as printed; empty without table
+    `ratings`.
+    """
     numbers = machine_numbers(tables)
     if "power_imbalance" not in numbers:
         return ""
@@ -338,7 +361,10 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
-    """The pinions, and every key of the config that holds something; changes against the file extended."""
+    """Return the table of the pinions, if there is a transmission, and one of every key of the config
+    that holds something (key, value). With a `base` it marks changes and gives the base's values,
+    removed keys included.
+    """
     rows = _keys(values)
     frame = pd.DataFrame(list(rows.items()), columns=["key", "value"], dtype=object)
     caption = "The whole config, with its defaults"
@@ -362,14 +388,16 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
 
 
 def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Dotted keys that hold something, with their values."""
+    """Return the values of a config by dotted key, without NAMES and without keys that hold None or an
+    empty text.
+    """
     rows = [row for section in values for row in _flat(section, values[section])]
     return {key: value for key, value in rows if key not in NAMES and value not in (None, "")}
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
-    """Return dotted keys and values below a key; a list of sections has numbered keys, any other list is one
-    value.
+    """Return dotted keys and values below a key. A list of sections has numbered keys (`[0]`); any
+    other list is one value, joined by commas.
     """
     if isinstance(value, Mapping):
         return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]

@@ -63,7 +63,7 @@ def shortened(svg: str) -> str:
     Returns
     -------
     str
-        The shorter text.
+        The shorter text; values of d, x, y and points have DECIMALS decimals.
     """
     drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
     drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
@@ -71,7 +71,9 @@ def shortened(svg: str) -> str:
 
 
 def _round_numbers(attribute: re.Match[str]) -> str:
-    """Round the coordinates of an attribute to DECIMALS."""
+    """Return an attribute of a svg element, matched as (name, value), with its decimal numbers rounded
+    to DECIMALS and single blanks.
+    """
     parts = NUMBER.split(attribute[2])
     parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
     return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
@@ -94,23 +96,26 @@ class Picture:
 
     @cached_property
     def still(self) -> str:
-        """Text of the svg. Raises CorruptFile where the file is not whole."""
+        """Text of the stored svg. Raises CorruptFile where the file is not whole."""
         return read_svg(self.path)
 
     @property
     def width_px(self) -> int:
-        """Width at which the text has the size it was drawn with."""
+        """Width of the svg in px (4/3 of a width in pt), at which its text has the size that it was
+        drawn with; 0 if the svg states none.
+        """
         match = re.search(r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.still[:4000])
         return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
 
     @property
     def anchor(self) -> str:
-        """Name of the figure inside the page."""
+        """Name of the figure for links inside the page: `figure-` and the file's name without its ending."""
         return f"figure-{self.path.stem}"
 
     @cached_property
     def interactive(self) -> Any:
-        """Interactive form of the picture, from the file beside it; nothing where it has no such form.
+        """Content of the json file beside the svg, which plotly.js draws in its place; None without
+        such a file or data.
 
         Raises CorruptFile where that file is not whole.
         """
@@ -141,7 +146,7 @@ class View:
     kind: Literal["pair", "body"] = "pair"
 
     def compressed_data(self) -> str:
-        """Return the data as compressed text, which the page's script unpacks.
+        """Return the data as JSON, compressed by gzip and encoded as base64, which the page's script unpacks.
 
         Returns
         -------
@@ -153,7 +158,10 @@ class View:
 
 @dataclass(frozen=True)
 class Chapter:
-    """One part of the page."""
+    """One part of the page.
+
+    Paragraphs of `text` are parted by empty lines; `view` is an interactive view in space.
+    """
 
     title: str
     text: str
@@ -163,7 +171,7 @@ class Chapter:
 
     @property
     def anchor(self) -> str:
-        """Name for links inside the page."""
+        """Title in small letters, with a hyphen for all but letters and digits, for links inside the page."""
         return "".join(letter if letter.isalnum() else "-" for letter in self.title.lower())
 
 
@@ -173,7 +181,7 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
     Parameters
     ----------
     title, lead : str
-        Heading, and a line below it.
+        Heading, and a line of text below it.
     chapters : sequence of Chapter
         Parts of the page in their order.
     first : FirstScreen or None
@@ -206,12 +214,12 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
 
 
 def _own_file(name: str) -> str:
-    """Return the text of a file beside this module."""
+    """Return the text of the file with a name in the folder of this module."""
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
 def _json(content: Any) -> bytes:
-    """Return plain values as compact JSON."""
+    """Return plain values as JSON without blanks, in UTF-8."""
     return json.dumps(content, separators=(",", ":")).encode()
 
 
@@ -221,19 +229,19 @@ def _pack(content: bytes) -> str:
 
 
 def encode_array(values: AnyArray, kind: type) -> str:
-    """Encode an array as text for a viewer: its bytes, little endian.
+    """Encode an array for a viewer: its numbers as bytes, little endian, row by row, in base64.
 
     Parameters
     ----------
     values : AnyArray
         The array, of any shape (...).
     kind : type
-        Type of its numbers.
+        Type of number to which values are converted, such as np.float32.
 
     Returns
     -------
     str
-        Text; numbers keep their unit.
+        Text, without the shape; numbers keep their unit.
     """
     return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
 
@@ -247,7 +255,7 @@ LIST_STYLE = "margin:.2em 0;padding-left:1.2em"
 
 
 def with_omissions(page: str, omissions: Sequence[str]) -> str:
-    """Return a page with a list of what is missing at its head.
+    """Return a page with a list of what is missing at the end of its header.
 
     Parameters
     ----------

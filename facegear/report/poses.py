@@ -59,12 +59,12 @@ def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     Parameters
     ----------
     tables : Mapping[str, pd.DataFrame]
-        Tables of the report by name.
+        Tables of the report by name: `poses_meshes`, `poses_leaving`, `poses_check`, `posed_stress`.
 
     Returns
     -------
     list[Table]
-        The tables; none without poses.
+        Four to six tables with captions; none without `poses_meshes`.
     """
     if "poses_meshes" not in tables:
         return []
@@ -86,7 +86,7 @@ def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
     Parameters
     ----------
     tables : Mapping[str, pd.DataFrame]
-        Tables of the report by name.
+        Tables of the report by name: `poses_meshes`, `poses_leaving`, `poses_loads`.
 
     Returns
     -------
@@ -108,7 +108,10 @@ def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _path(loaded_meshes: pd.DataFrame) -> list[str]:
-    """Say which contact path moves most, and which one is nearest to an end of the face."""
+    """Return two sentences: which loaded contact path moves furthest between `path_as_assembled_mm` and
+    `path_mm`, and which unloaded path is nearest to an end of the face. `loaded_meshes`: rows with a
+    path_mm.
+    """
     if loaded_meshes.empty:
         return ["No mesh carries load."]
     shift = loaded_meshes["path_mm"] - loaded_meshes["path_as_assembled_mm"]
@@ -136,7 +139,9 @@ def _path(loaded_meshes: pd.DataFrame) -> list[str]:
 
 
 def _pattern(loaded_meshes: pd.DataFrame) -> str:
-    """Say at which ends of the face the loaded pattern ends, and which tooth tips carry no load."""
+    """Say at which ends of the face the loaded pattern ends, and how far it stays from tips, mm. Empty
+    without the columns `pattern_to_..._mm` (distances, 0 or less at the edge).
+    """
     if f"{PATTERN}inner_end_mm" not in loaded_meshes or loaded_meshes.empty:
         return ""
     sentences = []
@@ -157,7 +162,9 @@ def _pattern(loaded_meshes: pd.DataFrame) -> str:
 
 
 def _changes(loaded_meshes: pd.DataFrame) -> str:
-    """Effect of poses on the contact at the meshes' own loads, where there is any load."""
+    """Return smallest and largest change (%) of stiffness, pressure and root stress by the pose, over
+    all loaded meshes; empty without loaded meshes. Columns: keys of CHANGE_COLUMNS.
+    """
     parts = [
         f"the {words} changes by {loaded_meshes[column].min():+.1f} to {loaded_meshes[column].max():+.1f} %"
         for column, words in CHANGE_COLUMNS.items()
@@ -167,7 +174,9 @@ def _changes(loaded_meshes: pd.DataFrame) -> str:
 
 
 def _force(meshes: pd.DataFrame) -> str:
-    """Say in words which mesh force the pose changes most."""
+    """Say which mesh force magnitude (N) the pose changes most, from column force_as_assembled_n to
+    force_n.
+    """
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     row = (after - before).abs().idxmax()
     return (
@@ -177,7 +186,9 @@ def _force(meshes: pd.DataFrame) -> str:
 
 
 def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Say at which loads contacts leave the face, as far as loads were computed."""
+    """Say at which loads (% of the mean torques) contacts leave the face (table `poses_leaving`), or
+    that none does up to the largest load computed (table `poses_loads`, column load_fraction).
+    """
     leaving_contacts, largest_percent = (
         tables["poses_leaving"],
         100 * tables["poses_loads"]["load_fraction"].max(),

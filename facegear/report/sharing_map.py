@@ -48,12 +48,12 @@ def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     Parameters
     ----------
     tables : mapping of str to pd.DataFrame
-        Tables of the case by file name.
+        Tables of the case by name: sharing_map_advice, _points, _curves and _inputs.
 
     Returns
     -------
     list of Table
-        Empty without a map.
+        Advice for each group, points and curves; empty without a map.
     """
     if "sharing_map_advice" not in tables:
         return []
@@ -74,12 +74,13 @@ def advice_tables(advice: pd.DataFrame) -> list[Table]:
     Parameters
     ----------
     advice : pd.DataFrame
-        Table `advice` of stage sharing_map.
+        Table `advice` of stage sharing_map: a row for each change and group, with kind, k_gamma (before),
+        found (after), gain (their difference) and MAIN_COLUMNS.
 
     Returns
     -------
     list of Table
-        One a group.
+        One for each group that a change affects; the first caption explains the columns.
     """
     group_tables: list[Table] = []
     for group, rows in advice[advice["gain"] != 0.0].groupby("group", sort=False):
@@ -96,7 +97,7 @@ def sharing_map_text(tables: Mapping[str, pd.DataFrame]) -> str:
     Parameters
     ----------
     tables : mapping of str to pd.DataFrame
-        Tables of the case by file name.
+        Tables of the case by name: sharing_map_advice, _curves and _reasons.
 
     Returns
     -------
@@ -117,7 +118,8 @@ def advice_lines(advice: pd.DataFrame) -> list[str]:
     Parameters
     ----------
     advice : pd.DataFrame
-        Table `advice` of stage sharing_map.
+        Table `advice` of stage sharing_map: group, kind, change, from_to, k_gamma, found, gain,
+        predicted_gain, worst, worst_found.
 
     Returns
     -------
@@ -141,7 +143,10 @@ def advice_lines(advice: pd.DataFrame) -> list[str]:
 
 
 def _whole_machine(advice: pd.DataFrame) -> list[str]:
-    """The changes that lower the largest K_gamma of all groups most, with it."""
+    """Return one line on the largest K_gamma of all groups: its value, and the BEST changes that lower
+    it by more than VISIBLE. Empty without advice. Columns worst and worst_found: largest factor before
+    and after a change.
+    """
     if advice.empty:
         return []
     changes = advice.drop_duplicates("change").sort_values("worst_found", kind="stable")
@@ -161,7 +166,7 @@ def closed_form_line(curves: pd.DataFrame, reasons: pd.DataFrame) -> str:
     Parameters
     ----------
     curves, reasons : pd.DataFrame
-        Tables of stage sharing_map.
+        Tables of stage sharing_map: floating, all_carry, k_gamma_p95, closed_p95; and reason.
 
     Returns
     -------
@@ -184,24 +189,30 @@ def closed_form_line(curves: pd.DataFrame, reasons: pd.DataFrame) -> str:
 
 
 def _change(row: pd.Series) -> str:
-    """Say in words what a change is and what it gives."""
+    """Return a change in words with its values, and the factor before and after it. `row`: row of table
+    `advice`.
+    """
     return f"{row['change']} ({row['from_to']}): {_from_to(row)}"
 
 
 def _from_to(row: pd.Series) -> str:
-    """Say in words the factor before and after a change."""
+    """Return `K_gamma from A to B`, before and after a change; of idlers it is the 95th percentile over
+    drawn errors.
+    """
     measure = "P95 of K_gamma" if row["kind"] == "idlers" else "K_gamma"
     return f"{measure} from {row['k_gamma']:.3f} to {row['found']:.3f}"
 
 
 def _prediction(row: pd.Series) -> str:
-    """Say in words the gain beside that of the closed form, if there is one."""
+    """Return the gain (fall of K_gamma) of a change and that of the closed form in words; empty if the
+    closed form gives none. `row`: row of table `advice`.
+    """
     if pd.isna(row["predicted_gain"]):
         return ""
     return f", a gain of {row['gain']:.3f} (closed form {row['predicted_gain']:.3f})"
 
 
 def _capital(words: object) -> str:
-    """Return words with a capital at the beginning."""
+    """Return words as text with a capital at the beginning."""
     text = str(words)
     return text[:1].upper() + text[1:]

@@ -63,13 +63,14 @@ def unit_of(name: str) -> str:
     Returns
     -------
     str
-        The unit; empty where the name has none.
+        The unit, such as `N/µm`; empty where the name has none.
     """
     return UNITS.get(ending_of(name), "")
 
 
 def ending_of(name: str) -> str:
-    """Return the unit in a column's name.
+    """Return the unit in a column's name, as it stands there: the first key of UNITS between `_` and
+    the end or a blank.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def ending_of(name: str) -> str:
     Returns
     -------
     str
-        A key of UNITS; empty where the name has no unit.
+        A key of UNITS, such as `n_per_um`; empty where the name has no unit.
     """
     return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
 
@@ -164,14 +165,18 @@ class Table:
 
     @cached_property
     def page_frame(self) -> pd.DataFrame:
-        """Columns in the order of the page: main ones first; forces in kN and stiffnesses in N/µm."""
+        """Rows with the columns in the order of the page, `main` first, in the units of ENGINEERING
+        unless `exact`.
+        """
         main_columns = [name for name in self.main if name in self.frame]
         other_columns = [name for name in self.frame.columns if name not in main_columns]
         table = self.frame[[*main_columns, *other_columns]] if main_columns else self.frame
         return table if self.exact else _engineering(table)
 
     def on_demand(self) -> list[bool]:
-        """Return for each column whether it is shown on demand only.
+        """Return for each column of `page_frame` whether a click is needed to show it.
+
+        With more than SHOWN_COLUMNS columns these are all behind `main`, or behind SHOWN_COLUMNS.
 
         Returns
         -------
@@ -188,7 +193,7 @@ class Table:
         Returns
         -------
         list of str
-            One text a column.
+            One text for each column of `page_frame`.
         """
         return [words(str(name)) for name in self.page_frame.columns]
 
@@ -198,7 +203,7 @@ class Table:
         Returns
         -------
         list of bool
-            One flag a column.
+            One flag for each column of `page_frame`; truth values are no numbers.
         """
         return [
             pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
@@ -211,7 +216,7 @@ class Table:
         Returns
         -------
         list of list of str
-            Row by row.
+            Row by row, in the columns of `page_frame`; numbers with `digits`, missing values blank.
         """
         units = [ending_of(str(name)) for name in self.page_frame.columns]
         largest = {unit: self._largest(unit, units) for unit in set(units)}
@@ -222,7 +227,8 @@ class Table:
         ]
 
     def print_pt(self) -> float:
-        """Return the size of letters at which no word or number is broken on A4.
+        """Return the largest size of letters at which no word or number is broken on A4, estimated by
+        LETTER_WIDTH.
 
         Returns
         -------
@@ -247,13 +253,13 @@ class Table:
         Returns
         -------
         str
-            Name with the ending csv.
+            Anchor and first CAPTION_WORDS words of the caption, with the ending csv.
         """
         caption_words = re.findall(r"[a-z0-9]+", self.caption.lower())[:CAPTION_WORDS]
         return f"{chapter}-{'-'.join(caption_words)}.csv"
 
     def csv_uri(self) -> str:
-        """Return the table as csv with all its digits.
+        """Return `frame`, in its own units and with all digits, as csv.
 
         Returns
         -------
@@ -264,14 +270,18 @@ class Table:
         return f"data:text/csv;base64,{base64.b64encode(text.encode()).decode()}"
 
     def _largest(self, unit: str, units: Sequence[str]) -> float:
-        """The largest number of all columns with a unit; nothing for numbers without one."""
+        """Return the largest finite magnitude in all columns of floats with a unit; 0 for an empty unit
+        or no numbers. `units`: key of UNITS of each column, empty for none.
+        """
         columns = [self.page_frame.iloc[:, i] for i, ending in enumerate(units) if unit and ending == unit]
         floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
         sizes = [column[np.isfinite(column)].abs().max() for column in floats]
         return max((float(size) for size in sizes if isfinite(size)), default=0.0)
 
     def _cell(self, value: object, zero: float) -> str:
-        """Return a cell; what is missing is blank."""
+        """Return a value as text of a cell: yes or no, blank for None and nan, numbers with `digits`. A
+        float below `zero` in magnitude is written as 0.
+        """
         if isinstance(value, bool | np.bool_):
             return "yes" if value else "no"
         if value is None or value != value:
@@ -285,7 +295,9 @@ class Table:
 
 
 def _engineering(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with the units of ENGINEERING where its largest number is large enough for them."""
+    """Return a table whose columns of floats in N, N/m and W are in the larger units of ENGINEERING,
+    with new names, if the largest magnitude of all columns in that unit reaches the limit given there.
+    """
     columns_scaled, names = {}, {}
     for name in table.columns:
         ending = ending_of(str(name))
@@ -314,7 +326,7 @@ def words(name: str) -> str:
     Returns
     -------
     str
-        Words and the unit in brackets.
+        Words and the unit in brackets, such as `force as assembled (N)`.
     """
     ending = ending_of(name)
     return (
@@ -325,14 +337,16 @@ def words(name: str) -> str:
 
 
 def _longest_word(text: str) -> int:
-    """Letters of the longest part of a cell that is not broken; a unit stays with its brackets."""
+    """Return the number of letters of the longest part of a cell that a printed table does not break: a
+    word, with a unit in brackets; LONG_COLUMN for cells of more than LONG letters.
+    """
     return (
         LONG_COLUMN if len(text) > LONG else max((len(word) for word in unbroken(text).split(" ")), default=0)
     )
 
 
 def unbroken(text: str) -> str:
-    """Return text whose units in brackets are not broken.
+    """Return text in which the unit `(N m)` is not broken between lines.
 
     Parameters
     ----------
@@ -342,6 +356,6 @@ def unbroken(text: str) -> str:
     Returns
     -------
     str
-        The text with spaces in units that do not break.
+        The text with a space in that unit that does not break.
     """
     return re.sub(r"\(N m\)", "(N\u00a0m)", text)

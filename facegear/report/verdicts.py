@@ -59,11 +59,11 @@ def verdicts(
     Parameters
     ----------
     values : mapping
-        Plain values of the config.
+        Plain values of the config by section; a section that was left out is None.
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), None where it was not computed.
 
     Returns
     -------
@@ -82,7 +82,10 @@ def verdicts(
 
 
 def _teeth(pair: Mapping[str, Any] | None) -> Iterator[Verdict]:
-    """Judge whether the bodies of the teeth keep clear of each other."""
+    """Yield the verdict on interference of the unloaded teeth: red with the depth, else green with the
+    smallest gap, µm. `pair`: record of the tooth geometry with keys `interference` and `smallest_gap`;
+    None yields none.
+    """
     if pair is None:
         return
     gap = pair["interference"] or pair["smallest_gap"]
@@ -115,12 +118,12 @@ def flank_of(row: Any) -> str:
 
 
 def nearest_rating(rating: pd.DataFrame) -> Any:
-    """Return the row whose safety is the smallest part of what is required.
+    """Return the row with the smallest ratio of safety to required safety.
 
     Parameters
     ----------
     rating : DataFrame
-        Table `rating`, not empty.
+        Table `rating` of stage rating, not empty; columns safety and required are read.
 
     Returns
     -------
@@ -132,7 +135,10 @@ def nearest_rating(rating: pd.DataFrame) -> Any:
 
 
 def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
-    """Judge bending or pitting by the flank nearest to its limit."""
+    """Judge bending or pitting (`failure`, a key of RATED_FAILURES) from table `rating`: red if any
+    safety is below the required one. The reason names the row of the smallest safety over required
+    safety.
+    """
     rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
     rows = rating[rating["failure"] == failure]
     if rows.empty:
@@ -166,7 +172,12 @@ def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Ve
 
 
 def _failure(row: Any, colour: str) -> str:
-    """Return what a rating that fails says in the status line."""
+    """Return the end of the status line's sentence for a rating that fails; empty unless `colour` is
+    RED.
+
+    row: row of table `rating`. With a damage above 1 it tells the life in hours and the required one,
+    which is damage * life; otherwise the safety and the required one.
+    """
     if colour != RED:
         return ""
     body = str(row.body).replace("_", " ")
@@ -178,7 +189,10 @@ def _failure(row: Any, colour: str) -> str:
 
 
 def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
-    """Judge scuffing or micropitting by the loaded flank nearest to its limit, in any bin."""
+    """Judge scuffing or micropitting (`failure`, a key of OIL) by the smallest safety in table
+    `mesh_losses`, over all flanks and bins (bin 0: nominal load); red below SAFE. Grey without the
+    table or the oil's data.
+    """
     if "mesh_losses" not in tables:
         return _without_result(values, "lubrication", OIL[failure])
     losses, column = tables["mesh_losses"], f"{failure}_safety"
@@ -199,12 +213,14 @@ def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], 
 
 
 def _margin(kelvin: float) -> str:
-    """Return the distance (K) of a temperature from its limit in words; negative beyond the limit."""
+    """Return the distance from a limit of temperature in words; `kelvin` (K) is positive below the limit."""
     return f"{format_number(abs(kelvin))} K {'below' if kelvin >= 0.0 else 'above'} the limit"
 
 
 def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Verdict:
-    """Judge the largest K_gamma by `load_sharing.required_k_gamma`."""
+    """Judge the largest load sharing factor K_gamma of all groups of pinions: green up to
+    `load_sharing.required_k_gamma`, red above it, grey where either is unknown.
+    """
     subject, limit = "Load sharing", values["load_sharing"]["required_k_gamma"]
     groups = known_k_gamma(tables)
     if groups.empty:
@@ -222,7 +238,9 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
 
 
 def _why_no_k_gamma(values: Mapping[str, Any]) -> str:
-    """Say in words why there is no load sharing factor."""
+    """Return a sentence why K_gamma is not computed: no two pinions have one role, or the lever arms
+    are not geometric. `values`: plain values of the config.
+    """
     machine = values["transmission"]
     roles = [] if machine is None else [pinion["role"] for pinion in machine["pinions"]]
     if len(roles) == len(set(roles)):
@@ -233,7 +251,8 @@ def _why_no_k_gamma(values: Mapping[str, Any]) -> str:
 
 
 def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Return the groups with their K_gamma of the running machine, else at rest.
+    """Return the groups of pinions with K_gamma (column k_gamma) of the running machine, else of that
+    at rest.
 
     Parameters
     ----------
@@ -243,7 +262,8 @@ def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Rows of table `following_groups` or, at the largest torque, `hunting_groups`; else empty.
+        Table `following_groups` if it holds any k_gamma; else rows of `hunting_groups` at its largest
+        torque_n_m that have one; else empty.
     """
     for name in ("following_groups", "hunting_groups"):
         groups = tables.get(name, pd.DataFrame())
@@ -255,7 +275,10 @@ def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def _power(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
-    """Judge whether the power brought in is taken out."""
+    """Yield the verdict on the power balance of table `ratings` (columns quantity, value): red if
+    `power_imbalance`, relative to the larger power, exceeds ROUNDING_OF_POWER. Yield nothing without
+    the table.
+    """
     if "ratings" not in tables:
         return
     numbers = dict(tables["ratings"].itertuples(index=False))
@@ -275,7 +298,9 @@ def _power(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
 
 
 def _at_rest(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
-    """Judge whether every mesh carries load at rest."""
+    """Yield the verdict on table `meshes`, the meshes at rest: red if the flank of any is `open`, else
+    green with the smallest force, kN. Undecided contacts of table `contacts` are a caveat.
+    """
     if "meshes" not in tables:
         return
     meshes = tables["meshes"]
@@ -293,7 +318,10 @@ def _at_rest(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
 
 
 def _range_solved(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
-    """Judge whether the loads lie within the torques for which contact was solved."""
+    """Yield the verdict on loads beyond the largest torque (N m) in table `by_torque`, for which
+    contact was solved: red if a table of `loads_beyond` or a mesh at rest exceeds it. Yield nothing
+    without the table.
+    """
     if "by_torque" not in tables:
         return
     largest_solved = tables["by_torque"]["torque_n_m"].max()
@@ -319,12 +347,13 @@ def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
     Parameters
     ----------
     tables : mapping of str to DataFrame
-        Tables of the report by name.
+        Tables of the report by name: column within_torques_solved of `rating`, `mesh_losses` and
+        `stress_over_speed`.
 
     Yields
     ------
     str
-        The count in words.
+        Such as `3 of 24 ratings exceed it`.
     """
     for name, singular, plural in (
         ("rating", "rating", "ratings"),
@@ -346,12 +375,13 @@ def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, 
     judgements : sequence of Verdict
         The verdicts.
     summary : str
-        A sentence on what else was found, empty for none.
+        A sentence that is appended, empty for none.
 
     Returns
     -------
     tuple of str
-        Colour of the worst verdict, a few words, and the sentences that follow them.
+        RED, GREEN or GREY (also if green verdicts stand beside ones not computed); a few words that end
+        in a colon; the sentences that follow them.
     """
     red = [verdict for verdict in judgements if verdict.colour == RED]
     green = sum(verdict.colour == GREEN for verdict in judgements)

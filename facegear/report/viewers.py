@@ -125,8 +125,9 @@ def pair_view(
 
 
 def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, Any]:
-    """Return the drawn teeth of a body as plain values: numbers of teeth, surface patches, and gauges in the
-    fillets.
+    """Return the drawn teeth of a body as plain values: number of all teeth, first and number of those
+    shown, rotation of tooth 0 in pitches, surface patches (mm, base64), and gauges in the fillets (None
+    without stress).
     """
     teeth = teeth_of(design, name)
     tooth_count = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
@@ -145,7 +146,9 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
 
 
 def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
-    """Return the positions of the root gauges of a tooth, and the number of the first tooth of a passage."""
+    """Return the places (mm, base64) of the root gauges of one tooth with the shape of their grid, and
+    the number of the first tooth of a passage. `stress`: ROOT_STRESS_ARRAYS, SI units.
+    """
     position = stress[f"{name}_position_m"]
     return {
         "shape": list(position.shape[1:3]),
@@ -155,7 +158,9 @@ def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
 
 
 def _tension(torque: float, stress: Arrays) -> dict[str, Array]:
-    """Return the tension (MPa) at the gauges of both bodies over the passage."""
+    """Return by body the tension, MPa, at the gauges over a passage at a solved torque (N m);
+    compression is 0.
+    """
     row = int(np.flatnonzero(stress["torque_n_m"] == torque)[0])
     return {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
 
@@ -168,8 +173,11 @@ def _torque(
     stress: Arrays | None,
     friction: Arrays | None,
 ) -> dict[str, Any]:
-    """Return the part of the view at one torque: loaded nodes by position, coded values, their largest, and
-    curves.
+    """Return the part of the view at one torque (N m) as plain values.
+
+    These are the loaded nodes in the order of `positions` (pitches; `start`: where each one's nodes
+    begin), coded values of each quantity with the largest one, tension at the gauges, and transmission
+    error (µm) and load shares over the positions.
     """
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
@@ -205,7 +213,7 @@ def line_pressure(loads: Arrays, on: Mask) -> Array:
     loads : mapping of (...) arrays
         Arrays PRESSURE_ARRAYS of stage contact, SI units.
     on : mask of shape (loaded nodes,)
-        Nodes to return.
+        Nodes to return, of those in `loads`.
 
     Returns
     -------
@@ -225,7 +233,7 @@ def of_lines(loads: Arrays, on: Mask, lines: Arrays, values: Array) -> Array:
     loads : mapping of (...) arrays
         Arrays PRESSURE_ARRAYS of stage contact, SI units.
     on : mask of shape (loaded nodes,)
-        Nodes to return.
+        Nodes to return, of those in `loads`.
     lines : mapping of (m,) arrays
         Torque, N m, position, tooth and plane of each value, under the names LINE; indices but for the
         torque.
@@ -256,7 +264,7 @@ def line_load(loads: Arrays, on: Mask) -> Array:
     loads : mapping of (...) arrays
         Arrays PRESSURE_ARRAYS of stage contact, SI units.
     on : mask of shape (loaded nodes,)
-        Nodes to return.
+        Nodes to return, all at one torque: forces are summed by position, tooth and column.
 
     Returns
     -------
@@ -274,7 +282,7 @@ def line_load(loads: Arrays, on: Mask) -> Array:
 
 
 def _parts(values: AnyArray, largest: float) -> str:
-    """Encode values as 255ths of the largest, rounded up; 0 where a value is nan."""
+    """Encode values (...) as bytes in base64: 255ths of `largest`, rounded up; 0 where a value is nan."""
     return encode_array(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
 
 
@@ -296,9 +304,9 @@ def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | Non
     Parameters
     ----------
     modes : DataFrame
-        Table `modes` of stage gear_bodies.
+        Table `modes` of stage gear_bodies: gear, nodal_diameters, mode, frequency_hz.
     shapes : mapping of (...) arrays
-        Arrays of stage gear_bodies; nodes in m.
+        Arrays of stage gear_bodies (see `facegear.parts.body_tables.shape_arrays`); nodes in m.
 
     Returns
     -------
@@ -334,7 +342,11 @@ def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | Non
 
 
 def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dict[str, Any]:
-    """Return the outline of a gear, mm, and its modes with coded displacements of the outline's nodes."""
+    """Return a gear's outline (mm, base64), its outer radius (mm), and its modes with displacements of
+    the outline's nodes: 16-bit integers, LARGEST_CODE at the largest displacement of the mode.
+
+    modes: its rows of table `modes`; shapes: arrays of stage gear_bodies.
+    """
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
     outline = _thinned(nodes, boundary(quads))
     frequencies = modes.set_index(["nodal_diameters", "mode"])["frequency_hz"]
@@ -358,7 +370,7 @@ def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dic
 
 
 def boundary(quads: AnyArray) -> Integers:
-    """Return the nodes along the outline of a mesh, in order.
+    """Return the nodes along the outline of a mesh of quadrilaterals without holes, in order.
 
     Parameters
     ----------
@@ -385,7 +397,10 @@ def boundary(quads: AnyArray) -> Integers:
 
 
 def _thinned(nodes: Array, along: Integers) -> Integers:
-    """Return the nodes of an outline at its corners and at about PIECES even distances between them."""
+    """Return the nodes of an outline at its corners, where it turns by more than TURN_DEG, and at about
+    PIECES even distances between them. `nodes`: (n, 2) of the whole mesh, mm; `along`: indices around
+    the outline.
+    """
     positions = nodes[along]
     after = np.roll(positions, -1, axis=0) - positions
     steps = np.linalg.norm(after, axis=1)

@@ -65,7 +65,7 @@ def grouped_warnings(
     tables : mapping of str to DataFrame
         Tables of the report by name.
     pair : mapping or None
-        Record of the tooth geometry, where it was computed.
+        Record of the tooth geometry (`geometry/pair.json`), where it was computed.
     notes : sequence of str
         What a run says of its config when it starts, as `key: words`.
 
@@ -87,7 +87,9 @@ def grouped_warnings(
 
 
 def _of_note(note: str) -> ResultWarning:
-    """Return the warning of a note `key: words` on the config."""
+    """Return the warning of a note `key: words` on the config. The first part of `key` is the section,
+    which chooses the subject (SECTIONS); a key that is a section alone is left out of the text.
+    """
     key, _, words = note.partition(": ")
     section = key.split(".")[0].split(" ")[0]
     if key == section:
@@ -97,7 +99,7 @@ def _of_note(note: str) -> ResultWarning:
 
 
 def _line(words: str) -> str:
-    """Return words that end in a full stop."""
+    """Return a text with a full stop at its end, unless it ends in one or in an exclamation mark."""
     return words if words.endswith((".", "!")) else f"{words}."
 
 
@@ -113,7 +115,7 @@ def warnings(
     tables : Mapping[str, pd.DataFrame]
         Tables of the report by name.
     pair : Mapping[str, Any] | None
-        Record of the tooth geometry, None where it was not computed.
+        Record of the tooth geometry (`geometry/pair.json`), None where it was not computed.
 
     Yields
     ------
@@ -153,7 +155,9 @@ def warnings(
 
 
 def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
-    """Yield what lies outside the limits of the friction model."""
+    """Yield a warning for each limit of a friction model beyond which some loss lies, from table
+    `limits`: the largest percentage of the loss that lies outside, and its torque, N m.
+    """
     limits = tables.get("limits", pd.DataFrame())
     if limits.empty:
         return
@@ -170,7 +174,9 @@ def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWar
 
 
 def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
-    """Yield contacts of which the modes do not know whether they carry."""
+    """Yield one warning that names the contacts of table `contacts` with state `undecided`: their load
+    is too small to tell from rounding, and the modes take them as open.
+    """
     contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
     names = contacts.loc[contacts["state"] == "undecided", "contact"]
     if len(names):
@@ -179,7 +185,9 @@ def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWa
 
 
 def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
-    """Yield speeds of the sweep without a periodic motion, and meshes out of contact."""
+    """Yield warnings from table `sweep`: the number of speeds without periodic motion, meshes open at
+    every speed, and the largest fraction of time for which other meshes are open.
+    """
     if "sweep" not in tables:
         return
     sweep = tables["sweep"]
@@ -204,7 +212,10 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarnin
 
 
 def _mesh_list(meshes: Sequence[str], of: int) -> str:
-    """Return names of meshes; of many only how many of all they are."""
+    """Return names of meshes joined by commas, or a count if there are more than MOST_NAMED.
+
+    of: number of all meshes.
+    """
     if len(meshes) <= MOST_NAMED:
         return ", ".join(meshes)
     return f"all {of} meshes" if len(meshes) == of else f"{len(meshes)} of {of} meshes"
@@ -213,7 +224,9 @@ def _mesh_list(meshes: Sequence[str], of: int) -> str:
 def _contact_warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]
 ) -> Iterator[ResultWarning]:
-    """Yield what the contact analysis does not know, a line a kind whatever the number of torques."""
+    """Yield warnings of the contact analysis, at most one of each kind: scaled stiffness, edge contact,
+    tips in fillets, pressure above DENTED, too few positions. Tables `ltca` and `by_torque` are read.
+    """
     if values["mesh_stiffness"]["source"] == "fem_scaled":
         words = "Only its shape is computed; its mean is given (mesh_stiffness.mean_n_per_m)."
         yield ResultWarning("Stiffness", GIVEN_INPUT, words)
@@ -266,7 +279,11 @@ def _contact_warnings(
 
 
 def _torques(rows: pd.DataFrame, every: pd.DataFrame) -> str:
-    """Return at which torques some rows of a table by torque stand, in words."""
+    """Return at which torques `rows` of a table stand, such as `at 20 N m`, `at every torque`, `from 20
+    N m on`.
+
+    every: the whole table, in rising order of column torque_n_m.
+    """
     torques = rows["torque_n_m"]
     if len(rows) == 1:
         return f"at {torques.iloc[0]:g} N m"

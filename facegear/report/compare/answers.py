@@ -25,7 +25,7 @@ def answer_names() -> list[str]:
     Returns
     -------
     list[str]
-        The names, sorted.
+        The names, sorted, such as `current/quick`; empty if none are installed.
     """
     folder = files("facegear.report.compare").joinpath("stored")
     if not folder.is_dir():
@@ -48,9 +48,9 @@ def store(folder: Path, path: Path) -> None:
     Parameters
     ----------
     folder : Path
-        The folder.
+        Folder of results.
     path : Path
-        Path of the file.
+        Path of the zip file: tables up to MAX_BYTES, shortened manifests, and NOT_STORED.
     """
     all_names = sorted(answer_tables(folder))
     names = [name for name in all_names if (folder / name).stat().st_size <= MAX_BYTES]
@@ -90,7 +90,9 @@ def open_answer(name: str) -> Iterator[Path]:
 
 
 def _short(manifest: Path) -> str:
-    """Reduce a manifest to what says how a table was made, without time, machine and summary."""
+    """Return a manifest's keys on how its table was made (rule, versions, params, code, rebuild,
+    inputs, files) as JSON text; time, machine and summary are left out.
+    """
     record = documents.read(manifest)
     keys = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
     return json.dumps({key: record[key] for key in keys if key in record}, sort_keys=True)

@@ -69,7 +69,9 @@ class Comparison:
 
     @property
     def equal(self) -> bool:
-        """Whether nothing moved beyond its numerical error, and no label changed."""
+        """Whether no value has a verdict of CHANGES: nothing moved beyond its numerical error, no label
+        changed, and nothing stands in one folder only.
+        """
         return not any(self.counts[verdict] for verdict in CHANGES)
 
 
@@ -86,7 +88,7 @@ def compare(old: Path, new: Path) -> Comparison:
     Returns
     -------
     Comparison
-        The comparison.
+        Rows of all values that differ (columns COLUMNS), and the number of values of each verdict.
 
     Raises
     ------
@@ -117,7 +119,12 @@ def answer_tables(folder: Path) -> set[str]:
     Returns
     -------
     set[str]
-        Paths inside the folder.
+        Paths of all `*.csv` inside the folder, with `/`, but for LEFT_OUT and UNDETERMINED.
+
+    Raises
+    ------
+    FacegearError
+        For a folder without such tables.
     """
     paths = (path.relative_to(folder) for path in folder.rglob("*.csv"))
     table_paths = {path.as_posix() for path in paths if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
@@ -137,14 +144,17 @@ def tables_not_stored(folder: Path) -> set[str]:
     Returns
     -------
     set of str
-        Paths inside the folder of results.
+        Paths inside the folder of results, as NOT_STORED lists them.
     """
     path = folder / NOT_STORED
     return set(documents.read(path, ("tables",))["tables"]) if path.is_file() else set()
 
 
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
-    """Judge all values of a table that stands in one or both folders."""
+    """Judge all values of a table by its path `name` inside the folders; `old` or `new` is None where
+    the table is missing. Return one row of COLUMNS for each value of common rows and columns, and one
+    for each row or column that stands on one side only.
+    """
     if old is None or new is None:
         return _one_sided(name, ["whole table"], Verdict.ONLY_IN_NEW if old is None else Verdict.ONLY_IN_OLD)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
@@ -183,9 +193,13 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
 
 
 def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.DataFrame:
-    """The table with a text index that names its rows; rows of one name are counted.
+    """Return a table without its key columns, with a text index that names its rows.
 
-    speeds: of rows that are named by a bracket, beside the keys.
+    A name joins the values of `table.keys`; repeated names end in #2, #3. Rows without keys are named
+    by number.
+
+    speeds: further part (rows,) of the names in tables with a bracket, see `_bracket_names`; None in
+    others.
     """
     keys = [key for key in table.keys if key in frame.columns]
     if not keys:
@@ -201,17 +215,18 @@ def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.D
 
 
 def _value_text(value: object) -> str:
-    """Return a value as text of at most ten digits."""
+    """Return a value as text: floats with at most ten significant digits, anything else by `str`."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
 def _bracket_names(
     before: pd.DataFrame, after: pd.DataFrame, table: Table
 ) -> tuple[pd.Series | None, pd.Series | None]:
-    """Speeds that name the rows of two tables with brackets; None for other tables.
+    """Return the speeds, in the unit of the bracket's columns, that name the rows of two tables (old,
+    new); None and None for tables without a bracket.
 
-    A row of `after` takes the name of the nearest row of `before` with the same keys, where the errors of
-    both allow that they are the same.
+    A row is named by its own `before` speed. A row of `after` takes the speed of the nearest unused row
+    of `before` with the same keys instead, if their middles differ by at most the sum of both errors.
     """
     if table.bracket is None:
         return None, None
@@ -231,7 +246,11 @@ def _bracket_names(
 
 
 def _bracket_places(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, np.ndarray]:
-    """Middle of the bracket of each row, and how far its true speed may lie from it, both (rows,)."""
+    """Return the middle of each row's bracket, and the error of its speed, both (rows,) in the unit of
+    the speeds.
+
+    The error is the larger of the stated one and of the width of the bracket.
+    """
     first, last = (frame[column].to_numpy(float) for column in (bracket.before, bracket.after))
     width = np.abs(last - first)
     stated_error = frame[bracket.error].to_numpy(float) if bracket.error in frame.columns else width
@@ -239,7 +258,10 @@ def _bracket_places(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, 
 
 
 def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
-    """Return the name of each row without its mesh or body, shape (rows,)."""
+    """Return the values of the keys of each row but for its mesh or body (`table.item`), joined to a
+    text, shape (rows,). Rows with equal text form a group that mirror images may permute; without an
+    item each row is alone.
+    """
     keys = [key for key in table.keys if key in frame.columns and key != table.item]
     if not keys or table.item is None:
         return pd.Series(np.arange(len(frame)).astype(str), index=frame.index)
@@ -250,7 +272,15 @@ def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
 def _judge_column(
     name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
-    """Judge the values of one column row by row, with their errors."""
+    """Judge one column of the common rows of two tables; return a row of COLUMNS for each row.
+
+    Numbers within REPEATABLE are unchanged. Otherwise the first that fits counts: irregular motion,
+    change within the numerical error, after irregular motion on both sides, mirror image, moved. Labels
+    are compared as text.
+
+    name: path of the table; before, after: tables of `_by_row` with equal index; group: text of
+    `_without_item` of each row.
+    """
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     rows = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
@@ -291,7 +321,9 @@ def _judge_column(
 
 
 def _zero(table: Table, rows: pd.DataFrame, column: str) -> pd.Series:
-    """Magnitude up to which a number of a column counts as zero, shape (rows,)."""
+    """Return the magnitude, in the unit of the values, up to which a number of a column counts as zero,
+    shape (rows,). In tables with one quantity a row it depends on the quantity of the row.
+    """
     of_column = table.zero.get(column, 0.0)
     if table.quantity is None or column == table.quantity:
         return pd.Series(of_column, index=rows.index)
@@ -301,10 +333,13 @@ def _zero(table: Table, rows: pd.DataFrame, column: str) -> pd.Series:
 def _errors(
     table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, scale: np.ndarray
 ) -> np.ndarray:
-    """Relative numerical error of a column (rows,), NaN where none is stated.
+    """Return the numerical error of a column (rows,), relative to `scale`; NaN where none is stated.
 
-    A bracket's speeds are known up to the errors of both tables, and what changes over a bracket is known no
-    better where the bracket lies elsewhere.
+    Speeds of a bracket have the sum of the errors of both tables, over `scale`. Other columns have
+    `Table.error`, with `elsewhere` where the bracket of the row differs between the tables.
+
+    scale: largest magnitude (rows,) to which changes of the column are relative, see
+    `_relative_change`.
     """
     plain, elsewhere = table.error(column), table.error(column, elsewhere=True)
     errors = np.full(len(before), np.nan if plain is None else plain)
@@ -322,7 +357,14 @@ def _errors(
 def _same_but_for_items(
     old: pd.Series, new: pd.Series, quantity: pd.Series | None, group: pd.Series, errors: np.ndarray
 ) -> np.ndarray:
-    """Rows in whose group meshes or bodies have exchanged their numbers, and no more, shape (rows,)."""
+    """Return for which rows (rows,) the old and new magnitudes of their group agree after sorting.
+
+    Then meshes or bodies have exchanged their numbers and nothing else moved. Magnitudes of a group may
+    differ by the relative `errors` (rows,), at least by REPEATABLE.
+
+    quantity: name of each row's quantity, for tables with one quantity a row; group: text of
+    `_without_item`.
+    """
     sizes = pd.DataFrame(
         {"old": old.abs().to_numpy(), "new": new.abs().to_numpy(), "group": group.to_numpy()}
     )
@@ -337,14 +379,21 @@ def _same_but_for_items(
 
 
 def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
-    """Return the values of a quantity in the order of the rows of `by_size`."""
+    """Return the values (rows,) of a column in the order of the rows of `by_size`, whose index holds
+    their numbers.
+    """
     return pd.Series(quantity.to_numpy()[by_size.index])
 
 
 def _relative_change(
     old: pd.Series, new: pd.Series, quantity: pd.Series | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Change over the largest magnitude of the column or of the row's quantity, and that, both (rows,)."""
+    """Return |new - old| over a scale, and the scale, both (rows,).
+
+    The scale is the largest finite magnitude of both columns, among rows of one `quantity` if that is
+    given. Equal values and two NaN have change 0, a NaN on one side an infinite one. Where the scale is
+    0 the change is absolute.
+    """
     pair = np.stack([old.to_numpy(float), new.to_numpy(float)])
     with np.errstate(invalid="ignore"):
         change = np.where((pair[0] == pair[1]) | np.isnan(pair).all(axis=0), 0.0, np.abs(pair[1] - pair[0]))
@@ -356,7 +405,9 @@ def _relative_change(
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
-    """Return for which rows (rows,) the motion does not repeat."""
+    """Return for which rows (rows,) a column of `table.motion` names a class that does not begin with
+    REGULAR. Empty classes count as regular.
+    """
     motions = [frame[column] for column in table.motion if column in frame.columns]
     rows = np.zeros(len(frame), dtype=bool)
     for motion in motions:
@@ -366,7 +417,9 @@ def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
 
 
 def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
-    """Rows in which a class of motion is irregular on both sides, and left open on one, shape (rows,)."""
+    """Return for which rows (rows,) both columns of classes name an irregular motion, and at least one
+    leaves open which (OPEN_CLASSES). False in columns that hold no class of motion.
+    """
     if old.name not in table.motion:
         return np.zeros(len(old), dtype=bool)
     sides = [side.fillna(REGULAR).astype(str) for side in (old, new)]
@@ -375,8 +428,8 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
 
 
 def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
-    """Return for which rows (rows,) a column of truth values is true; for none where there is no
-    such column.
+    """Return for which rows (rows,) a column of truth values is true. Missing values are false; without
+    such a column all are false.
     """
     if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
@@ -384,6 +437,8 @@ def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:
-    """Return rows that stand in one folder only, with their verdict."""
+    """Return one row of COLUMNS for each name of a row or column that stands in one folder only;
+    values, change and error are empty.
+    """
     frame = pd.DataFrame({"file": name, "row": rows}, columns=list(COLUMNS))
     return frame.assign(verdict=verdict)

@@ -46,7 +46,7 @@ def causes(name: str, old: Path, new: Path) -> list[str]:
     Returns
     -------
     list[str]
-        A line for each difference.
+        A line for each difference in the manifests of the table's stage and of all stages before it.
     """
     before, after = _history(old / name), _history(new / name)
     if not before or not after:
@@ -56,7 +56,11 @@ def causes(name: str, old: Path, new: Path) -> list[str]:
 
 
 def _history(path: Path) -> dict[str, Manifest]:
-    """Manifests of a table's stage and of all before it that the folder still holds, by rule."""
+    """Return the manifests of a table's stage and of all stages before it, by rule (name of the stage).
+
+    It follows the `inputs` of each manifest from the table's file on; files that the folder no longer
+    holds are skipped.
+    """
     folders: dict[Path, dict[str, tuple[Path, Manifest]]] = {}
     history: dict[str, Manifest] = {}
     visited, pending = set(), [path]
@@ -75,7 +79,9 @@ def _history(path: Path) -> dict[str, Manifest]:
 
 
 def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
-    """Path and content of the manifest behind each file of a folder."""
+    """Return for each file name in a folder the path and the content of the manifest that lists it in
+    `files`; of several manifests the first by name.
+    """
     manifests: dict[str, tuple[Path, Manifest]] = {}
     for path in sorted(folder.glob(f"*{MANIFEST_SUFFIX}")):
         manifest = documents.read(path, ("rule", "files", "params"))
@@ -84,7 +90,9 @@ def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
 
 
 def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
-    """Yield which keys of the config differ, with both values."""
+    """Yield a line `config KEY: old -> new` for each key of the config that a stage of both sides read
+    and whose value differs. `before` and `after`: manifests by rule, see `_history`.
+    """
     for rule in sorted(before.keys() & after.keys()):
         old, new = (dict(_leaves("", side[rule]["params"].get("needs") or {})) for side in (before, after))
         for key in sorted(old.keys() | new.keys()):
@@ -93,7 +101,11 @@ def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> It
 
 
 def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield dotted keys and values below a key; parts of lists go by their name."""
+    """Yield (dotted key, value) of everything below `key` in nested mappings.
+
+    Lists of mappings are entered, too: an item's part of the key is its `name`, else its number from 0.
+    Other lists are values.
+    """
     if isinstance(value, Mapping):
         inside = list(value.items())
     elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
@@ -109,12 +121,14 @@ def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _value_text(values: Mapping[str, Any], key: str) -> str:
-    """Return a value as text, or `absent`."""
+    """Return the value of a key as Python text (`repr`), or `absent` if the key is missing."""
     return repr(values[key]) if key in values else "absent"
 
 
 def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
-    """Yield which stages have other code."""
+    """Yield a line for each stage (rule) whose code hash differs, and for each that only one side has.
+    `before` and `after`: manifests by rule, see `_history`.
+    """
     for rule in sorted(before.keys() & after.keys()):
         if before[rule].get("code") != after[rule].get("code"):
             yield f"code of stage {rule}"
@@ -123,7 +137,9 @@ def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iter
 
 
 def _versions(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
-    """Yield which libraries have other versions."""
+    """Yield a line `LIBRARY old -> new` for each library whose version differs in the manifests of a
+    stage. `before` and `after`: manifests by rule, see `_history`.
+    """
     for rule in sorted(before.keys() & after.keys()):
         old, new = before[rule].get("versions", {}), after[rule].get("versions", {})
         for library in sorted(old.keys() & new.keys()):
@@ -139,16 +155,17 @@ MAX_FILES_NAMED = 3
 
 
 def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: Path, new: Path) -> None:
-    """Write the page of a comparison.
+    """Write the HTML page of a comparison: verdict, causes, curves over each other and the largest
+    changes.
 
     Parameters
     ----------
     path : Path
-        Path of the file.
+        Path of the HTML file.
     comparison : Comparison
         The comparison.
     reasons : pd.DataFrame
-        Table of `causes_table`.
+        Table of `causes_table`, columns cause and table.
     old : Path
         Folder of the earlier results.
     new : Path
@@ -183,7 +200,8 @@ def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: P
 
 
 def verdict(comparison: Comparison) -> str:
-    """Write one sentence on the whole comparison.
+    """Say whether both folders agree, and count changes that do not matter; else in how many tables
+    they differ.
 
     Parameters
     ----------
@@ -193,7 +211,7 @@ def verdict(comparison: Comparison) -> str:
     Returns
     -------
     str
-        The sentence.
+        One to four sentences.
     """
     if comparison.equal:
         within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
@@ -230,7 +248,7 @@ def stored_in_words(name: str, folder: Path) -> str:
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:
-    """Return the largest changes of every table, those beyond their error first.
+    """Return the LIMIT largest relative changes of every table, those whose verdict is in CHANGES first.
 
     Parameters
     ----------
@@ -240,7 +258,7 @@ def largest(comparison: Comparison) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row for each change.
+        Rows of `comparison.rows` (columns COLUMNS of judge.py), in the order of their files.
     """
     rows = comparison.rows.assign(counts=comparison.rows["verdict"].isin(CHANGES))
     order = rows.sort_values(["counts", "relative_change"], ascending=False, kind="stable")
@@ -262,7 +280,7 @@ def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        Columns table, cause.
+        Columns cause (a line of `causes`) and table (names of the tables behind which it stands).
     """
     files = [
         name for name in comparison.rows["file"].unique() if (old / name).exists() and (new / name).exists()
@@ -273,7 +291,7 @@ def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
 
 
 def by_table(comparison: Comparison) -> pd.DataFrame:
-    """Count numbers or labels by table and verdict.
+    """Count the values that differ by table and verdict.
 
     Parameters
     ----------
@@ -283,7 +301,8 @@ def by_table(comparison: Comparison) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row for each table and verdict: count, and the largest relative change.
+        A row for each table and verdict: columns table, verdict, numbers (count), largest_change
+        (relative).
     """
     changes_by_file = comparison.rows.groupby(["file", "verdict"], sort=True)["relative_change"]
     return (
@@ -294,19 +313,21 @@ def by_table(comparison: Comparison) -> pd.DataFrame:
 
 
 def _file_names(files: pd.Series) -> str:
-    """Name the first files and count the others."""
+    """Join the first MAX_FILES_NAMED names of tables by commas and say how many more there are."""
     remainder = f" and {len(files) - MAX_FILES_NAMED} more" if len(files) > MAX_FILES_NAMED else ""
     return ", ".join(files[:MAX_FILES_NAMED]) + remainder
 
 
 def _counts(comparison: Comparison) -> pd.DataFrame:
-    """Return the number of values of each verdict as a table."""
+    """Return columns `verdict` and `numbers and labels` (count), a row for each verdict that occurs."""
     rows = [(verdict.value, count) for verdict, count in comparison.counts.items() if count]
     return pd.DataFrame(rows, columns=["verdict", "numbers and labels"])
 
 
 def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Iterator[Picture]:
-    """Yield figures of the curves that moved most, a figure for each file."""
+    """Draw the declared curve (CURVES) of each table that differs and stands in both folders, as svg in
+    `folder`; yield its path and caption.
+    """
     for name in comparison.rows["file"].unique():
         curve = declaration_of(CURVES, name)
         if curve and (old / name).exists() and (new / name).exists():
@@ -320,7 +341,12 @@ def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Ite
 
 
 def _worst_series(name: str, curve: Curve, old: Path, new: Path) -> tuple[pd.DataFrame, pd.DataFrame, str]:
-    """Rows of the series that moved most, in both folders."""
+    """Return the old and the new rows of the series whose `curve.y` changed most in absolute terms at
+    one x, and the values that name the series, joined by commas.
+
+    name: path of the table inside both folders. Tables without series are returned whole, with an empty
+    name.
+    """
     before, after = (tables.read(folder / name) for folder in (old, new))
     if curve.quantity:
         before, after = (frame[frame["quantity"] == curve.quantity] for frame in (before, after))

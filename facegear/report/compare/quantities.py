@@ -78,19 +78,20 @@ class Table:
     bracket: Bracket | None = None
 
     def error(self, column: str, elsewhere: bool = False) -> float | None:
-        """Return the numerical error of a column.
+        """Return the numerical error of a column: that of the longest text in `errors` with which its
+        name begins.
 
         Parameters
         ----------
         column : str
             Name of the column.
         elsewhere : bool
-            Whether the row's bracket lies elsewhere in the other table.
+            Whether the row's bracket lies elsewhere in the other table; `bracket.errors` then go first.
 
         Returns
         -------
         float or None
-            The error, relative; None where none is stated.
+            The error, relative to the largest magnitude of the column; None where none is stated.
         """
         errors = {**self.errors, **self.bracket.errors} if elsewhere and self.bracket else self.errors
         fitting = [start for start in errors if column.startswith(start)]
@@ -186,9 +187,11 @@ TABLES: Mapping[str, Table] = {
 
 @dataclass(frozen=True)
 class Curve:
-    """A table that is drawn: `y` over `x`, one line for each value of `series`.
+    """A table that is drawn: column `y` over column `x`, one line for each combination of values of
+    `series`.
 
-    `quantity`: the rows that are drawn of a table with one quantity a row.
+    `quantity`: value of column `quantity` of the rows that are drawn, in tables with one quantity a
+    row; None draws all rows.
     """
 
     x: str
@@ -209,19 +212,23 @@ CURVES: Mapping[str, Curve] = {
 
 
 def declaration_of(declarations: Mapping[str, Declaration], name: str) -> Declaration | None:
-    """Return the declaration of a table; the table of a study's point has that of the machine's own.
+    """Return the declaration of the table with a path, or of the table whose path ends in `/` and a
+    declared one.
+
+    So tables of a study's point, which lie in a folder inside, share the declaration of the machine's
+    table.
 
     Parameters
     ----------
     declarations : Mapping[str, Declaration]
-        Declarations by path of the table.
+        Any values by path of the table, such as TABLES or CURVES.
     name : str
-        Path of the table.
+        Path of the table inside a folder of results, with `/`.
 
     Returns
     -------
     Declaration or None
-        The declaration, None where there is none.
+        The first that fits, None where there is none.
     """
     return next(
         (declarations[path] for path in declarations if name == path or name.endswith(f"/{path}")), None

@@ -42,14 +42,15 @@ def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) 
     Parameters
     ----------
     pinions : Sequence[Mapping[str, Any]]
-        Pinions as in the config.
+        Pinions as in the config; keys name and role are read.
     meshes : Iterable[str]
         Names `pinion/side` of the meshes.
 
     Returns
     -------
     list[str]
-        Names of the meshes.
+        For each role in the order of the pinions the first of `meshes` that begins with the pinion's
+        name.
     """
     roles = [pinion["role"] for pinion in pinions]
     names = [pinion["name"] for i, pinion in enumerate(pinions) if roles[i] not in roles[:i]]
@@ -72,9 +73,10 @@ def amplitudes(
     Parameters
     ----------
     branches : pd.DataFrame
-        Table `branches` of stage branches.
+        Table `branches` of stage branches: a row for each point and mesh, with branch, period (mesh
+        periods), stable, arc, speed_rpm and deflection_ac_rms_um.
     special : pd.DataFrame
-        Table `special` of stage branches.
+        Table `special` of stage branches: branch, kind, arc and speed_rpm of folds and bifurcations.
     sweep : pd.DataFrame
         Table `sweep` of stage dynamics_sweep.
     meshes : Sequence[str]
@@ -85,7 +87,7 @@ def amplitudes(
     Returns
     -------
     Figure
-        The figure.
+        A panel for each mesh: RMS, µm, over speed, rpm.
     """
     low, high = branches["speed_rpm"].min(), branches["speed_rpm"].max()
     sweep = sweep[sweep["speed_rpm"].between(low, high)]
@@ -109,7 +111,11 @@ def amplitudes(
 
 
 def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
-    """Yield the stable and unstable parts of a branch as curves."""
+    """Yield a branch of one mesh as curves of RMS (µm) over speed (rpm), cut where its stability
+    changes: solid between two stable points, dashed elsewhere. The colour tells the period.
+
+    branch: rows of table `branches` in the order of their arc.
+    """
     colour = _colour(int(branch["period"].iloc[0]))
     speed, value = branch["speed_rpm"].to_numpy(), branch["deflection_ac_rms_um"].to_numpy()
     stable = branch["stable"].to_numpy(dtype=bool)
@@ -123,7 +129,10 @@ def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
-    """Yield the special points of a branch as marks by kind."""
+    """Yield hollow marks at the special points of a branch, one curve for each kind; their height is
+    interpolated in the branch's RMS (µm) over arc length. `special`: rows of table `special` on this
+    branch.
+    """
     for kind, marker in MARKERS.items():
         rows = special[special["kind"] == kind]
         if len(rows):
@@ -132,14 +141,18 @@ def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _colour(period: int) -> str:
-    """Return the colour of a period."""
+    """Return the colour of a motion by its period in mesh periods: one each for LABELLED_PERIODS, one
+    for all others.
+    """
     return PERIOD_COLOURS[
         LABELLED_PERIODS.index(period) if period in LABELLED_PERIODS else len(LABELLED_PERIODS)
     ]
 
 
 def _keys(branches: pd.DataFrame) -> Iterator[Key]:
-    """Yield the entries of the legend: periods, stable and unstable lines."""
+    """Yield the entries of the legend: one for each period that occurs in table `branches`, then stable
+    and, if there are any, unstable lines.
+    """
     for name, colour in dict.fromkeys(_motion(f"period-{period}") for period in _by_size(branches["period"])):
         yield Key(name, colour, width=1.6)
     yield Key("stable", grey(0.3), width=1.6)
@@ -148,7 +161,7 @@ def _keys(branches: pd.DataFrame) -> Iterator[Key]:
 
 
 def _by_size(periods: pd.Series) -> list[int]:
-    """Return the periods in rising order, those with a colour of their own first."""
+    """Return the different periods (mesh periods) in rising order, LABELLED_PERIODS before all others."""
     return sorted(periods.unique(), key=lambda period: (period not in LABELLED_PERIODS, period))
 
 
@@ -159,14 +172,15 @@ def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `loci` of stage branches_loci.
+        Table `loci` of stage branches_loci: locus, kind, parameter, speed_rpm, factor (parameter over its
+        nominal value) and corner (`cusp` for a cusp, else empty).
     speed_rpm : float
         Nominal speed of the pinions, rpm.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each second parameter.
     """
     panels = []
     for parameter in list(dict.fromkeys(table["parameter"])) or ["torque"]:
@@ -197,7 +211,8 @@ def fractions(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `coexistence` of stage branches.
+        Table `coexistence` of stage branches: speed_rpm, motion, branch, fraction of the starts and its
+        standard error.
 
     Returns
     -------
@@ -231,12 +246,14 @@ def fractions(table: pd.DataFrame) -> Figure:
 
 
 def _array_of(value: float) -> Array:
-    """Return a number as an array of one value."""
+    """Return a number as an array of shape (1,)."""
     return np.array([float(value)])
 
 
 def _motion(label: str) -> tuple[str, str]:
-    """Return name and colour of a class of motion."""
+    """Return legend name and colour of a class of motion, such as `period-2` (mesh periods); all
+    classes that do not begin with `period-` are `not periodic`.
+    """
     if not label.startswith("period-"):
         return "not periodic", IRREGULAR
     period = int(label.removeprefix("period-"))
@@ -251,14 +268,14 @@ def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `multipliers` of stage branches.
+        Table `multipliers` of stage branches: branch, speed_rpm, real and imaginary part of a multiplier.
     branch : int
         Number of the branch.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel with the unit circle; it ends at a real part of at most 2.1 in magnitude.
     """
     rows = table[table["branch"] == branch]
     reach = 1.05 * float(np.clip(rows[["real", "imaginary"]].abs().to_numpy().max(), 1.0, 2.0))
@@ -301,9 +318,9 @@ def figures(
     circle : pd.DataFrame
         Table `multipliers` of stage branches.
     coexistence : pd.DataFrame
-        Table of stage branches.
+        Table `coexistence` of stage branches.
     curves : pd.DataFrame
-        Table of stage branches_loci.
+        Table `loci` of stage branches_loci.
     sweep : pd.DataFrame
         Table `sweep` of stage dynamics_sweep.
     speed_rpm : float
@@ -314,7 +331,7 @@ def figures(
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Amplitudes, loci, fractions and multipliers of branch 0, as their functions draw them.
     """
     meshes = typical_meshes(pinions, branches["mesh"])
     return (

@@ -29,11 +29,12 @@ def campbell(
     Parameters
     ----------
     frequencies : DataFrame
-        Table `frequencies` of stage modal.
+        Table `frequencies` of stage modal: class and frequency_hz; rigid body modes are left out.
     resonances : DataFrame
-        Table of the peaks of the sweep.
+        Table `resonances` of stage dynamics_sweep: speed_rpm, order (multiple of the mesh frequency at
+        which the strongest mode vibrates) and resonance (that mode).
     jumps : DataFrame
-        Table of the jumps of the sweep.
+        Table `jumps` of stage dynamics_sweep: speed_after_rpm, kind, order and resonance.
     teeth : int
         Number of teeth of a pinion.
     last_rpm : float
@@ -42,7 +43,7 @@ def campbell(
     Returns
     -------
     Figure
-        The figure.
+        One panel, frequency (kHz) over speed (rpm).
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     top = 1.1 * elastic["frequency_hz"].max()
@@ -72,15 +73,18 @@ def campbell(
 
 
 def _on_line(orders: pd.Series) -> pd.Series:
-    """Return which orders are multiples of half the mesh frequency; motion that is not locked to the mesh has
-    others.
+    """Return a mask (rows,): which orders, multiples of the mesh frequency, are whole multiples of one
+    half. Motion that is not locked to the mesh has other orders.
     """
     return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
 
 
 def _marks(rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> Iterator[Curve]:
-    """Yield marks at each row's speed and the response frequency of its strongest mode; grey where on no
-    line.
+    """Yield one curve of marks at (speed, order * mesh frequency), rpm and kHz, for rows whose order is
+    a multiple of one half, and a grey one for the others.
+
+    rows: table with columns order, resonance and the speed column named `speed`; teeth: of a pinion;
+    symbol: marker; label: name in the legend.
     """
     unique = rows.drop_duplicates([speed, "resonance"])
     on = _on_line(unique["order"].astype(float))
@@ -97,7 +101,9 @@ def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: in
     Parameters
     ----------
     spectra : mapping of (...) arrays
-        Speeds, rpm, orders and amplitudes, m, as stage dynamics_sweep stores them in `waterfall`.
+        Arrays `waterfall` of stage dynamics_sweep: `orders` (n,), multiples of the mesh frequency from
+        0 on; for each direction `up_speed_rpm` (speeds,) and `up_amplitude_m` (speeds, meshes, n), or
+        `down_...`.
     mesh : int
         Index of the mesh in the arrays.
     mesh_name : str
@@ -108,7 +114,7 @@ def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: in
     Returns
     -------
     Figure
-        The figure.
+        A panel for each direction; amplitudes below 1/1000 of the largest count as that.
     """
     directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
     orders = spectra["orders"][1:]

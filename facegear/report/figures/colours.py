@@ -50,7 +50,7 @@ def channels(colour: str) -> tuple[float, float, float]:
 
 
 def colour_of(number: int) -> str:
-    """Return the colour of the curve of a number.
+    """Return the colour of a curve by its number; after the last of COLOURS the first follows again.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def scale_colours(name: str, positions: Iterable[float]) -> list[str]:
 
 @cache
 def _scale_colour(name: str, position: float) -> str:
-    """Return the colour of a matplotlib scale at a position from 0 to 1."""
+    """Return the colour `#rrggbb` of the matplotlib scale `name` at a position from 0 to 1."""
     from matplotlib import colormaps, colors  # a figure is data: only its drawing and scales need the library
 
     return str(colors.to_hex(colormaps[name](position)))
@@ -115,7 +115,7 @@ def mesh_looks(meshes: Iterable[str]) -> dict[str, dict[str, Any]]:
     Parameters
     ----------
     meshes : iterable of str
-        Names of meshes, as `pinion/gear`.
+        Names of meshes, as `pinion/upper` or `pinion/lower`.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def round_levels(low: float, high: float, count: int = 10) -> tuple[float, ...]:
     low, high : float
         Smallest and largest value, any unit.
     count : int
-        About how many levels, dimensionless.
+        About how many steps between the levels, dimensionless.
 
     Returns
     -------

@@ -18,7 +18,7 @@ def curves_compared(
     Parameters
     ----------
     old, new : DataFrame
-        Tables of one series, in any unit.
+        Tables of one series with columns `x` and `y`, in any unit.
     x, y : str
         Columns across and up.
     labels : (str, str)
@@ -29,7 +29,7 @@ def curves_compared(
     Returns
     -------
     Figure
-        The figure.
+        Two panels; the difference is drawn where both tables have the same x.
     """
     joined_curves = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
     (across, across_unit), (up, unit) = (split_label(label) for label in labels)
@@ -57,7 +57,7 @@ def split_label(label: str) -> tuple[str, str]:
     Parameters
     ----------
     label : str
-        The quantity with its unit in brackets, as tables of the report name it.
+        The quantity with its unit in brackets at the end, such as `force (N)`.
 
     Returns
     -------
@@ -77,23 +77,26 @@ LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
 def front_figure(
     designs: pd.DataFrame, front: pd.DataFrame, winners: pd.DataFrame, objectives: list[str]
 ) -> Figure:
-    """Draw every design by its first two objectives, by generation where there is but one; front and winners.
+    """Draw every design that was computed over its first two objectives, the front, and the winners.
+
+    With a single objective it is drawn over the generation, without winners.
 
     Parameters
     ----------
     designs : pd.DataFrame
-        Table `designs` of stage search.
+        Table `designs` of stage search: error (empty if computed), generation and a column for each
+        objective.
     front : pd.DataFrame
-        Table `front` of stage search.
+        Table `front` of stage search, with the same columns of objectives.
     winners : pd.DataFrame
-        Table `winners` of stage search.
+        Table `winners` of stage search: design and `<objective>_searched`.
     objectives : list[str]
         Names of the objectives.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel.
     """
     across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
     computed_designs = designs[designs["error"] == ""]
@@ -111,7 +114,9 @@ def front_figure(
 
 
 def _axis(objective: str) -> Axis:
-    """Return the axis of an objective or of the generations."""
+    """Return the axis of an objective, by its name without a unit; the axis of `generation` has whole
+    numbers.
+    """
     return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 
@@ -121,12 +126,12 @@ def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
     Parameters
     ----------
     hypervolume : pd.DataFrame
-        Table `hypervolume` of stage search.
+        Table `hypervolume` of stage search: seed (one island each), generation and hypervolume, 0 to 1.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, %, with a curve for each seed.
     """
     curves = [
         Curve(
@@ -161,12 +166,12 @@ def search_figures(
     winners : pd.DataFrame
         Table `winners` of stage search.
     objectives : Sequence[Mapping[str, Any]]
-        Objectives of section `search` of the config.
+        Objectives of section `search` of the config; name is read.
 
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `front_figure` and `hypervolume_figure`.
     """
     names = [objective["name"] for objective in objectives]
     return front_figure(designs, front, winners, names), hypervolume_figure(hypervolume)

@@ -52,12 +52,12 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table `ltca` of stage contact.
+        Table `ltca` of stage contact: a row for each torque_n_m and position (pitches).
 
     Returns
     -------
     Figure
-        The figure.
+        Three or four panels over one pitch.
     """
     torques = np.sort(ltca["torque_n_m"].unique())
     error, stiffness = [], []
@@ -97,13 +97,14 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
 
 
 def close_pitch(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of one torque with the end of the pitch: its beginning, each pair in the next one's
-    place.
+    """Return the rows of one torque in the order of position, with the first row added again one pitch later.
+
+    There each load share moves to the pair before: pair k + 1 at the begin is pair k one pitch later.
 
     Parameters
     ----------
     rows : pd.DataFrame
-        Rows of the contact table at one torque.
+        Rows of table `ltca` at one torque: position (pitches), SHARES and others.
 
     Returns
     -------
@@ -124,7 +125,7 @@ def contact_pattern(arrays: Arrays) -> Figure:
     Parameters
     ----------
     arrays : Arrays
-        Arrays `pressure` of stage contact.
+        Arrays `pressure` of stage contact (PRESSURE_ARRAYS), SI units.
 
     Returns
     -------
@@ -151,7 +152,7 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each entry: pinion radius over the place along its axis, mm.
     """
     patterns = {name: (pattern(arrays), float(torque)) for name, (arrays, torque) in panels.items()}
     top = max(
@@ -177,8 +178,9 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") 
 
 
 def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Map | Curve]:
-    """Return the marks of a panel: the pressure on the surface that the contact lines sweep, and points at
-    edges.
+    """Return a panel's marks over width and radius (mm) of the pinion: a map of the pressure (MPa) that
+    the contact lines sweep at a torque (N m, a key of the pattern), and points where an edge carries
+    the load.
     """
     width = 1e3 * flank_pattern.points[..., 1]
     radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
@@ -194,8 +196,8 @@ def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Ma
 
 
 def _fade_edges(field: Array, edge_kind: Integers) -> Array:
-    """Return the pressure field with zeros in unloaded planes next to loaded ones, where the loaded length
-    ends.
+    """Return a pressure field (stages, planes), Pa, with 0 in place of nan where nothing is in contact
+    (`edge_kind` < 0) and the plane before or after is loaded: there the loaded length ends.
     """
     is_finite = np.isfinite(field)
     beside = np.zeros_like(is_finite)
@@ -205,7 +207,9 @@ def _fade_edges(field: Array, edge_kind: Integers) -> Array:
 
 
 def _title(arrays: Arrays, torque: float) -> str:
-    """Return a panel's title: torque, largest pressure with its error, largest line load of a tip edge."""
+    """Return a panel's title: torque (N m), largest pressure and error (MPa), largest tip line load
+    (N/mm).
+    """
     on = arrays["line_torque_n_m"] == torque
     at = np.argmax(arrays["line_pressure_pa"][on])
     pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
@@ -230,7 +234,7 @@ def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `contact_curves` and `contact_pattern`.
     """
     return contact_curves(ltca), contact_pattern(pressure)
 
@@ -246,7 +250,7 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
     Parameters
     ----------
     cases : sequence of StudiedContact
-        Contact of each case.
+        Contact of each case; the first one is the machine itself.
     torque : float
         Torque on the pinion, N m; each case shows its nearest one.
     title : str
@@ -255,7 +259,7 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
     Returns
     -------
     Figure
-        The figure.
+        Three panels over one pitch.
     """
     error: list[Curve] = []
     stiffness: list[Curve] = []
@@ -280,8 +284,8 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
 
 
 def _variation(closed_curve: pd.Series) -> pd.Series:
-    """Return a curve less its mean over the pitch; its last value, which repeats the first, does not count in
-    the mean.
+    """Return a curve less its mean over the pitch; the last value repeats the first, so the mean leaves
+    it out.
     """
     return closed_curve - closed_curve.iloc[:-1].mean()
 
@@ -360,13 +364,13 @@ def operating_pose_figures(
     Parameters
     ----------
     meshes : pd.DataFrame
-        Table `meshes` of stage operating_pose.
+        Table `meshes` of stage operating_pose, as `pose_pattern` reads it.
     loads : pd.DataFrame
         Table `loads` of stage operating_pose.
     as_assembled : Arrays
-        Arrays `as_assembled` of stage operating_pose.
+        Contact arrays `as_assembled` of stage operating_pose, SI units.
     running : Arrays
-        Arrays `running` of stage operating_pose.
+        Contact arrays `running` of stage operating_pose: at the pose under the machine's forces.
 
     Returns
     -------
@@ -382,11 +386,11 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
     Parameters
     ----------
     meshes : pd.DataFrame
-        Table `meshes` of stage operating_pose.
+        Table `meshes` of stage operating_pose: mesh, torque_n_m, path_mm, path_as_assembled_mm.
     as_assembled : Arrays
-        Arrays `as_assembled` of stage operating_pose.
+        Contact arrays `as_assembled` of stage operating_pose, SI units.
     running : Arrays
-        Arrays `running` of stage operating_pose.
+        Contact arrays `running`; their torque selects the mesh with the nearest one.
 
     Returns
     -------
@@ -407,7 +411,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
-    """Return the title of a panel with the radius of the contact path and the largest pressure."""
+    """Return a panel's title: `words`, contact path (mm from the gear's axis), largest pressure (MPa)."""
     pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
     return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
 
@@ -420,12 +424,12 @@ def pose_paths(meshes: pd.DataFrame, loads: pd.DataFrame) -> Figure:
     meshes : pd.DataFrame
         Table `meshes` of stage operating_pose.
     loads : pd.DataFrame
-        Table `loads` of stage operating_pose.
+        Table `loads` of stage operating_pose: mesh, load_fraction, unloaded_path_mm.
 
     Returns
     -------
     Figure
-        The figure.
+        Distance from the gear's axis (mm) over load (%); an end of the face only if within NEAR.
     """
     row = meshes.iloc[0]
     ends: Look = {

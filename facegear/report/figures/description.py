@@ -64,7 +64,7 @@ class Axis:
 
     @property
     def label(self) -> str:
-        """Name, unit in brackets, and the note below."""
+        """Text of the axis: name with the unit in brackets, and below it the note."""
         return "\n".join(part for part in (with_unit(self.name, self.unit), self.note) if part)
 
 
@@ -112,7 +112,7 @@ class Panel:
         Returns
         -------
         list of ColourScale
-            Each once.
+            Those of maps, levels and points that have one, each once, in the order of the marks.
         """
         values_found = [
             mark.scale for mark in self.marks if isinstance(mark, Map | Levels | Scatter) and mark.scale
@@ -143,12 +143,14 @@ class Figure:
 
     @property
     def rows(self) -> int:
-        """Number of rows of panels."""
+        """Number of rows of panels; the last one may have fewer panels."""
         return -(-len(self.panels) // self.columns)
 
     @property
     def is_drawing(self) -> bool:
-        """Whether it is a drawing, which the page shows as it stands."""
+        """Whether any panel is bare, in space or has arrows. The page shows such a figure as a fixed
+        drawing, not with plotly.js.
+        """
         return any(
             panel.bare or panel.z or any(isinstance(mark, Arrow) for mark in panel.marks)
             for panel in self.panels
@@ -156,7 +158,9 @@ class Figure:
 
     @property
     def shared_scale(self) -> ColourScale | None:
-        """Colour scale of several panels, whose bar lies above them; None where each has its own."""
+        """Colour scale that all maps and points of two or more panels have in common, whose bar lies
+        above them; None where scales differ or only one panel has one.
+        """
         scales = [scale for panel in self.panels for scale in panel.scales()]
         return scales[0] if len(scales) > 1 and len(set(scales)) == 1 else None
 
@@ -191,7 +195,11 @@ class Figure:
         return not self.shared_y or number % self.columns == 0
 
     def limits(self, number: int, letter: Letter) -> tuple[float, float]:
-        """Return the ends of an axis of a panel; panels that share the axis have the same.
+        """Return the ends of an axis of a panel: given limits, else the extremes of all marks with a
+        margin.
+
+        Panels that share the axis have the same ends: those of a column if `shared_x`, of a row if
+        `shared_y`.
 
         Parameters
         ----------
@@ -216,7 +224,9 @@ class Figure:
 
 
 def entries(panels: Sequence[Panel], keys: Sequence[Key] = ()) -> list[Key]:
-    """List what the legend of panels says: each name once, in the order of the marks.
+    """List the legend's entries of panels: each name once, in the order of the marks, then `keys`.
+
+    Of several marks with one name the first decides the look.
 
     Parameters
     ----------
@@ -235,7 +245,10 @@ def entries(panels: Sequence[Panel], keys: Sequence[Key] = ()) -> list[Key]:
 
 
 def _legend_keys(panels: Sequence[Panel]) -> Iterator[Key]:
-    """Yield the entries of the legend from the named marks of all panels."""
+    """Yield an entry of the legend for each mark that has a name and is not kept out of the legend,
+    panel by panel; names may occur twice. Curves, points and lines give a line or marker, bars and
+    areas a patch.
+    """
     for mark in (mark for panel in panels for mark in panel.marks):
         if not getattr(mark, "name", "") or not getattr(mark, "in_legend", True):
             continue
@@ -260,7 +273,7 @@ def apart(x: AnyArray, y: AnyArray) -> tuple[Array, Array]:
     Returns
     -------
     x, y : array
-        Points of the curve, with nan after each line, shape (lines * (points + 1),).
+        Points of the curve, with nan between two lines, shape (lines * (points + 1) - 1,).
     """
     x, y = np.broadcast_arrays(np.atleast_2d(x), np.atleast_2d(y))
     ends = np.full((len(x), 1), np.nan)
@@ -268,7 +281,7 @@ def apart(x: AnyArray, y: AnyArray) -> tuple[Array, Array]:
 
 
 def stems(at: AnyArray, heights: AnyArray) -> tuple[Array, Array]:
-    """Return lines from 0 up to heights as one curve.
+    """Return upright lines from 0 to heights as one curve, with nan between them.
 
     Parameters
     ----------
@@ -285,7 +298,7 @@ def stems(at: AnyArray, heights: AnyArray) -> tuple[Array, Array]:
 
 
 def extent(mark: Mark, letter: Letter) -> Array:
-    """List the values of a mark on an axis, as far as they decide its ends.
+    """List the finite coordinates of a mark along an axis, from which the axis takes its ends.
 
     Parameters
     ----------
@@ -297,7 +310,7 @@ def extent(mark: Mark, letter: Letter) -> Array:
     Returns
     -------
     array
-        Values in the unit of the axis, shape (n,).
+        Values in the unit of the axis, shape (n,); empty for texts, arrows and bodies in space.
     """
     values: Any
     if isinstance(mark, Line):
@@ -319,7 +332,9 @@ def extent(mark: Mark, letter: Letter) -> Array:
 
 
 def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
-    """Return the smallest and largest coordinates of bars along an axis."""
+    """Return the coordinates of all bars' ends along an axis: their sides along the axis of positions;
+    base, tip and ends of error bars along the other.
+    """
     if (letter == "y") == bars.flat:
         half = 0.5 * bars.width
         return [*(bars.positions - half), *(bars.positions + half)]
@@ -329,7 +344,10 @@ def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
 
 
 def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
-    """Return the common ends of an axis of several panels, given ones first."""
+    """Return low and high end of axis `letter` for several panels: limits given by any panel (the
+    lowest and the highest), else the extremes of all marks with a margin; logarithmic if the first
+    panel's axis is.
+    """
     axes: list[Axis] = [getattr(panel, letter) for panel in panels]
     values = np.concatenate(
         [np.zeros(0), *(extent(mark, letter) for panel in panels for mark in panel.marks)]
@@ -344,7 +362,10 @@ def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
 
 
 def _with_margin(values: Array, lows: Sequence[float], highs: Sequence[float]) -> tuple[float, float]:
-    """Return the ends of an axis: the given ones, or the extreme values with a margin."""
+    """Return the ends of an axis: the smallest of `lows` and largest of `highs` if any, else the
+    extremes of `values` (n,) and MARGIN of their range. Values that are equal or missing get a range
+    about their middle.
+    """
     low = min(lows) if lows else float(values.min(initial=np.inf))
     high = max(highs) if highs else float(values.max(initial=-np.inf))
     if not np.isfinite([low, high]).all() or high - low <= NO_RANGE * max(abs(low), abs(high)):

@@ -64,7 +64,7 @@ SHORT = 1.3
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Apply the project's matplotlib style.
+    """Apply STYLE, the project's matplotlib settings, inside a `with` block.
 
     Yields
     ------
@@ -76,19 +76,19 @@ def styled() -> Iterator[None]:
 
 
 def draw(figure: Figure, size: tuple[float, float] | None = None) -> MplFigure:
-    """Draw a figure.
+    """Draw a figure with matplotlib.
 
     Parameters
     ----------
     figure : Figure
-        The figure.
+        Description of the figure.
     size : tuple of float, optional
         Width and height in inches; what its panels ask for unless given.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The drawing.
+        The drawing, whose layout may still move parts (see `place_parts`); the caller closes it.
     """
     width = size[0] if size else figure.width
     with styled():
@@ -114,7 +114,8 @@ def draw(figure: Figure, size: tuple[float, float] | None = None) -> MplFigure:
 
 
 def wrap_text(text: str, width: float) -> str:
-    """Break a text into lines of 9 pt.
+    """Break a text of 9 pt into lines that fit into a width, estimated by LETTER; at least 10 letters
+    each.
 
     Parameters
     ----------
@@ -158,7 +159,8 @@ def rename_texts(mpl_figure: MplFigure, labels: Mapping[str, str]) -> None:
 
 
 def place_parts(mpl_figure: MplFigure) -> None:
-    """Place the parts of a drawing for good, at the resolution of its files.
+    """Run the layout of a drawing once at the resolution of its files, and switch it off: no part moves
+    again.
 
     Parameters
     ----------
@@ -173,7 +175,9 @@ def place_parts(mpl_figure: MplFigure) -> None:
 
 
 def _height(figure: Figure) -> float:
-    """Inches that all parts of a figure take above each other."""
+    """Return the height (inches) that all parts of a figure take above each other: panels with titles,
+    labels, ticks and legends, the legend of all, the bar of a shared colour scale, and the title.
+    """
     margin, height = figure.width / figure.columns, 0.1
     for row in range(figure.rows):
         first = row * figure.columns
@@ -194,12 +198,14 @@ def _height(figure: Figure) -> float:
 
 
 def _lines(text: str) -> int:
-    """Count the lines of a text."""
+    """Count the lines of a text; an empty one has none."""
     return text.count("\n") + 1 if text else 0
 
 
 def _columns(keys: Sequence[Key], width: float) -> int:
-    """Most columns of a legend that fit into a width; matplotlib fills one after the other."""
+    """Return the largest number of columns of a legend that fit into `width` (inches), at least 1;
+    matplotlib fills one column after the other.
+    """
     lengths = [len(key.name) for key in keys]
     for columns in range(len(keys), 1, -1):
         if sum(HANDLE + LETTER * part.max() for part in np.array_split(lengths, columns)) < width:
@@ -208,12 +214,14 @@ def _columns(keys: Sequence[Key], width: float) -> int:
 
 
 def _legend_height(keys: Sequence[Key], width: float) -> float:
-    """Return the height of the legend, inches."""
+    """Return the height of a legend with these entries in a `width`, both in inches; 0 without entries."""
     return LINE_HEIGHT * 1.1 * ceil(len(keys) / _columns(keys, width)) + 0.05 if keys else 0.0
 
 
 def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
-    """Return one matplotlib axes for each panel."""
+    """Add one matplotlib axes for each panel to a drawing, in rows and columns with shared axes, and
+    return them in the order of the panels.
+    """
     heights = [
         max(panel.height for panel in figure.panels[row * figure.columns : (row + 1) * figure.columns])
         for row in range(figure.rows)
@@ -238,7 +246,9 @@ def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
 
 
 def _draw_panel(on: Axes, panel: Panel) -> None:
-    """Draw the marks of a panel, its axes and its title."""
+    """Draw the ground and the marks of a panel, later ones above earlier ones, and switch off the grid
+    where it would hide a map or cross bars.
+    """
     if panel.ground:
         on.set_facecolor(panel.ground)
     for order, mark in enumerate(panel.marks):
@@ -252,7 +262,9 @@ def _draw_panel(on: Axes, panel: Panel) -> None:
 
 
 def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
-    """Set labels, limits and ticks of a panel."""
+    """Set title, labels, limits and ticks of the panel with a number (from 0). `width`: room of the
+    title, inches.
+    """
     panel = figure.panels[number]
     on.set_title(wrap_text(panel.title, width - 0.4))
     if panel.z:
@@ -274,7 +286,11 @@ def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
 
 
 def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
-    """Set the ticks of an axis: named ones, or round numbers."""
+    """Set the ticks of one of matplotlib's axes, `on`: named ones if the axis has any, else round
+    numbers.
+
+    decades: length of a logarithmic axis, 0 for a linear one; letter: `x` or `y`.
+    """
     if axis.ticks:
         positions, names = zip(*axis.ticks, strict=True)
         upright = letter == "x" and len(names) >= UPRIGHT and max(map(len, names)) > 3
@@ -292,7 +308,9 @@ def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
 
 
 def _frame_in_space(on: Any, panel: Panel) -> None:
-    """Label and limit the three axes of a panel in space."""
+    """Label and limit the three axes of a panel in space, with one scale if `equal`, and set the view
+    (elevation and azimuth, deg).
+    """
     for letter in "xyz":
         axis = getattr(panel, letter)
         getattr(on, f"set_{letter}label")(axis.label)
@@ -309,7 +327,7 @@ def _frame_in_space(on: Any, panel: Panel) -> None:
 
 
 def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
-    """Draw the legend of a panel above it, where it hides no curve and no offset of its numbers."""
+    """Draw the legend of a panel above it, and its title above that. `width`: of the panel, inches."""
     if keys:
         columns = _columns(keys, width - 0.5)
         handles = [_handle(key) for key in keys]
@@ -320,7 +338,9 @@ def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
 
 
 def _handle(key: Key) -> Any:
-    """Return matplotlib's handle of an entry of the legend."""
+    """Return matplotlib's handle of an entry of the legend: a patch if `area`, else a line with its
+    marker.
+    """
     if key.area:
         return Patch(color=key.colour, alpha=key.opacity, lw=0, label=key.name)
     return Line2D(
@@ -337,7 +357,9 @@ def _handle(key: Key) -> Any:
 
 
 def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) -> None:
-    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel."""
+    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel that
+    has one.
+    """
     if scale := figure.shared_scale:
         mpl_figure.colorbar(_colours(scale), ax=list(axes), location="top", aspect=40, label=scale.label)
         return
@@ -349,12 +371,12 @@ def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) ->
 
 
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure to files.
+    """Write a figure to files, each at once or not at all.
 
     Parameters
     ----------
     figure : Figure
-        The figure.
+        Description of the figure.
     *paths : str or Path
         Files to write. The suffix names the format: one that matplotlib knows, or `.json` for plotly.js
         (`facegear.report.figures.draw_plotly`).

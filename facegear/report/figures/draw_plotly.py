@@ -47,7 +47,7 @@ SHORT = 1.3
 
 
 def interactive(figure: Figure) -> dict[str, Any]:
-    """Return a figure as plotly.js takes it.
+    """Return a figure as data and layout of plotly.js.
 
     Parameters
     ----------
@@ -95,26 +95,28 @@ def interactive(figure: Figure) -> dict[str, Any]:
 
 
 def write(figure: Figure, path: Path) -> None:
-    """Write a figure as a file that the page reads.
+    """Write a figure as json text of `interactive`, which the page reads.
 
     Parameters
     ----------
     figure : Figure
         The figure.
     path : Path
-        The file.
+        The json file.
     """
     text = json.dumps(interactive(figure), ensure_ascii=False, separators=(",", ":"))
     path.write_text(text, encoding="utf-8")
 
 
 def _axis_id(letter: str, number: int) -> str:
-    """Return plotly's name of an axis: x, x2, and so on."""
+    """Return plotly's name of the axis with a number from 0: x, x2, x3 and so on."""
     return letter if number == 0 else f"{letter}{number + 1}"
 
 
 def _is_by_point(panel: Panel) -> bool:
-    """Whether the pointer asks the marks of a panel one by one, not all along the x axis."""
+    """Return whether the pointer shows the nearest mark of a panel, not all curves at one x: for maps,
+    points and lying bars.
+    """
     return any(
         isinstance(mark, Map | Levels | Scatter)
         or getattr(mark, "flat", False)
@@ -124,7 +126,10 @@ def _is_by_point(panel: Panel) -> bool:
 
 
 def _domains(figure: Figure) -> tuple[list[tuple[float, float]], list[tuple[float, float]], float]:
-    """Ends of each column (in widths of all) and row (in heights of all, from below), and all heights, px."""
+    """Return the (low, high) ends of each column, as a fraction of the whole width from the left, and
+    of each row, as a fraction of the whole height from below, and that height of all rows with their
+    gaps, px.
+    """
     width = (1.0 - APART * (figure.columns - 1)) / figure.columns
     across = [
         (column * (width + APART), column * (width + APART) + width) for column in range(figure.columns)
@@ -145,18 +150,18 @@ def _domains(figure: Figure) -> tuple[list[tuple[float, float]], list[tuple[floa
 
 
 def _lines(text: str) -> int:
-    """Count the lines of a text at the width of a narrow screen."""
+    """Count the lines of a text after `narrow`; an empty one has none."""
     return narrow(text).count("\n") + 1 if text else 0
 
 
 def _below(axis: Axis) -> float:
-    """Pixels that numbers and label of an x axis take below it."""
+    """Return the pixels that numbers or names and the label of an x axis take below it."""
     letters = max((len(name) for _, name in axis.ticks), default=0)
     return TICKS + LINE * _lines(axis.label) + LETTER * max(letters - UPRIGHT, 0)
 
 
 def narrow(text: str) -> str:
-    """Break a text into lines that the narrowest figure holds.
+    """Break a text into lines of at most LABEL letters, which the narrowest figure holds.
 
     Parameters
     ----------
@@ -172,7 +177,7 @@ def narrow(text: str) -> str:
 
 
 def _list_once(data: Sequence[Part]) -> None:
-    """Let a name stand once in the legend, for its curves in all panels."""
+    """Switch off `showlegend` of every trace whose name is in the legend already, in place."""
     names_seen = set()
     for trace in data:
         if trace.get("showlegend"):
@@ -181,7 +186,7 @@ def _list_once(data: Sequence[Part]) -> None:
 
 
 def _title(target: PlotlyAxes) -> Part:
-    """Return plotly's annotation for the title above a panel."""
+    """Return plotly's annotation for the title above the upper left corner of a panel."""
     return {
         "xref": f"{target.x} domain",
         "yref": f"{target.y} domain",
@@ -197,7 +202,9 @@ def _title(target: PlotlyAxes) -> Part:
 
 
 def _layout(figure: Figure, targets: Sequence[PlotlyAxes], domains: Any) -> dict[str, Any]:
-    """Layout without shapes and annotations: axes, legend, margins and height."""
+    """Return plotly's layout without shapes and annotations: axes, legend, margins and height (px).
+    `targets`: one for each panel; `domains`: result of `_domains`.
+    """
     across, upwards, inside = domains
     below_legend = _above(figure) + BAR * (figure.shared_scale is not None)
     layout: dict[str, Any] = {
@@ -249,7 +256,9 @@ def _layout(figure: Figure, targets: Sequence[PlotlyAxes], domains: Any) -> dict
 
 
 def _above(figure: Figure) -> float:
-    """Pixels that titles of the first row, and texts at the upper ends of its panels, take above it."""
+    """Return the pixels that titles of the first row, and texts at the upper ends of its panels, take
+    above it.
+    """
     lines = 0
     for number, panel in enumerate(figure.panels[: figure.columns]):
         top = figure.limits(number, "y")[1]
@@ -259,7 +268,9 @@ def _above(figure: Figure) -> float:
 
 
 def _legend_height(figure: Figure, width: float) -> float:
-    """Pixels that the legend takes in a width: its entries stand beside each other as long as they fit."""
+    """Return the pixels that the legend takes in a `width` (px): entries stand beside each other as
+    long as they fit.
+    """
     height, row, row_width = float(LINE * _lines(figure.legend_title)), 0.0, 0.0
     for key in entries(figure.panels, figure.keys):
         lines = legend_text(key.name).split("<br>")
@@ -271,7 +282,7 @@ def _legend_height(figure: Figure, width: float) -> float:
 
 
 def _width_beside(figure: Figure) -> int:
-    """Pixels that texts at the right end of a panel, such as the names of its curves, take beside it."""
+    """Return the pixels that texts at the right end of a panel, such as names of curves, take beside it."""
     letters = [
         len(mark.text)
         for number, panel in enumerate(figure.panels)
@@ -282,7 +293,10 @@ def _width_beside(figure: Figure) -> int:
 
 
 def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
-    """Label, range, kind and named ticks of an axis."""
+    """Return plotly's layout of an axis: label, range, kind and named ticks. `ends`: low and high limit
+    in the unit of the axis; plotly gets their logarithms for a logarithmic axis, exchanged for a
+    falling one.
+    """
     limits = np.log10(ends) if axis.logarithmic else np.array(ends)
     layout_axis: dict[str, Any] = {
         "title": {"text": markup(narrow(label))},
@@ -303,7 +317,9 @@ def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
 def _colour_bars(
     figure: Figure, targets: Sequence[PlotlyAxes], traces_by_panel: Sequence[list[Part]], domains: Any
 ) -> None:
-    """Give maps and coloured points their bar of colours: beside a panel, or above all that share it."""
+    """Add to the traces, in place, a bar for each colour scale: beside its panel, or one above all that
+    share it. Scales with levels get a trace of their own. `domains`: result of `_domains`.
+    """
     _, upwards, inside = domains
     scales_shown = set()
     for number, (target, own_traces) in enumerate(zip(targets, traces_by_panel, strict=True)):

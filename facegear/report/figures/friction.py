@@ -33,7 +33,7 @@ def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[F
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `along_path`, `over_flank` and `efficiency_map`.
     """
     return along_path(local), over_flank(local, pressure), efficiency_map(map_table)
 
@@ -47,12 +47,12 @@ def along_path(local: Arrays) -> Figure:
     Parameters
     ----------
     local : Arrays
-        Arrays `local` of stage lubrication.
+        Arrays `local` of stage lubrication (LOCAL_ARRAYS), (points of contact lines,), SI units.
 
     Returns
     -------
     Figure
-        The figure.
+        Three panels over the passage (pitches), a curve for each torque.
     """
     torques = np.unique(local["torque_n_m"])
     stage, inside = passage(local["position"], local["tooth"]), local["inside"] > 0
@@ -88,14 +88,14 @@ def over_flank(local: Arrays, pressure: Arrays) -> Figure:
     Parameters
     ----------
     local : Arrays
-        Arrays `local` of stage lubrication.
+        Arrays `local` of stage lubrication (LOCAL_ARRAYS), SI units.
     pressure : Arrays
-        Arrays `pressure` of stage contact.
+        Arrays `pressure` of stage contact (PRESSURE_ARRAYS), which give the places on the flank.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels: loss per length, W/mm, and flash temperature, K.
     """
     contact_pattern = pattern(pressure)
     torque = local["torque_n_m"].max()
@@ -144,12 +144,12 @@ def efficiency_map(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `map` of stage lubrication.
+        Table `map` of stage lubrication: torque_n_m, speed_rpm, efficiency, contact_temperature_c.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels of contours; of curves where there is one torque or one speed.
     """
     field_map = table.assign(loss_percent=100 * (1 - table["efficiency"]))
     quantities = (("loss_percent", "Loss", "%"), ("contact_temperature_c", "Contact temperature", "°C"))
@@ -175,14 +175,14 @@ def efficiency_map(table: pd.DataFrame) -> Figure:
 
 
 def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
-    """Draw loss of every mesh and heat of every body at the nominal load.
+    """Draw loss of every mesh and heat of every body at the nominal load (bin 0).
 
     Parameters
     ----------
     meshes : pd.DataFrame
-        Table `meshes` of stage machine_loss.
+        Table `meshes` of stage machine_loss: bin, mesh, flank and loss_w.
     bodies : pd.DataFrame
-        Table `bodies` of stage machine_loss.
+        Table `bodies` of stage machine_loss: bin, body and heat_w.
 
     Returns
     -------
@@ -219,13 +219,19 @@ def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
 
 
 def _names(positions: Mapping[str, float]) -> Axis:
-    """Return an axis with a name at each of its positions, the first one above."""
+    """Return an upright axis with a name at each position (the numbers 0, 1, ...), the first one at the
+    top.
+    """
     ticks = [(at, name) for name, at in positions.items()]
     return Axis("", "", low=-0.6, high=len(positions) - 0.4, is_falling=True, ticks=ticks)
 
 
 def _extreme(stage: Array, values: Array, on: Mask, sign: float) -> tuple[Array, Array]:
-    """Places of the passage and the largest (sign 1) or smallest (-1) value at each."""
+    """Return the different stages of passage, (m,) in pitches, and at each the largest (sign 1) or
+    smallest (sign -1) of the values there, (m,).
+
+    stage, values, on: (points,); only points where `on` is true count.
+    """
     positions, row = np.unique(stage[on], return_inverse=True)
     extreme = np.full(positions.size, -np.inf)
     np.maximum.at(extreme, row, sign * values[on])

@@ -65,7 +65,7 @@ def gearbox_layout_figures(
     Parameters
     ----------
     meshes : DataFrame
-        Table `meshes` of stage ratings.
+        Table `meshes` of stage ratings: mesh, force_n and flank (`back` loads the other flank).
     transmission : Transmission
         Section `transmission` of the config.
     teeth : ToothNumbers
@@ -91,12 +91,13 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
     Parameters
     ----------
     layout : Layout
-        Places and roles of pinions and gears.
+        Angles, mesh radius (m) and roles of pinions and gears.
     meshes : DataFrame
-        Mean load, N, and fractions of the time on either flank of each mesh, as in table `meshes` of stage
-        hunting.
+        Mean load along the line of action, mean_n (N), and fractions of the time on either flank,
+        drive_fraction and back_fraction, of each mesh, as in table `meshes` of stage hunting.
     bearings : DataFrame or None
-        Mean forces on bearings, N, as in table `bearings` of stage hunting.
+        Mean forces on bearings, mean_x_n to mean_z_n (N), of each body, as in table `bearings` of stage
+        hunting.
 
     Returns
     -------
@@ -127,8 +128,11 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
 
 
 def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float) -> Panel:
-    """Return the panel of face gear `g`: rim, pinions, forces and labels. `metres`: arrow length of one
-    newton.
+    """Return the panel of the face gear with index `g`, seen from above: rim, pinions, forces and
+    labels.
+
+    loads: table `meshes` by mesh (mean_n, drive_fraction, back_fraction); forces: table `bearings` by
+    body (mean_x_n, mean_y_n, mean_z_n), None for none; metres: length of the arrow of one newton, m.
     """
     gear, radius = layout.gears[g], layout.mesh_radius
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
@@ -179,7 +183,11 @@ def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | N
 
 
 def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
-    """Return the text beside a pinion, outside the gear; it begins at the rim, whatever its length."""
+    """Return the text beside a pinion, LABEL mesh radii from the centre; it begins at the rim and runs
+    outwards.
+
+    radius: mesh radius, m; outwards: unit vector (2,) from the gear's centre to the pinion.
+    """
     x, y = outwards
     look: Look = {
         "across": "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right",
@@ -190,20 +198,23 @@ def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
 
 
 def _turn_arrow(radius: float, turns: float) -> Arrow:
-    """Return a curved arrow at a radius (m) that shows in which sense (sign of `turns`) the gear turns."""
+    """Return an arc with a head at a radius (m): the gear turns counterclockwise for `turns` > 0, else
+    clockwise. `turns` is 1 or -1."""
     ends = np.radians([200.0, 250.0]) if turns > 0.0 else np.radians([250.0, 200.0])
     start, stop = ((radius * np.cos(a), radius * np.sin(a)) for a in ends)
     return Arrow(start, stop, width=1.0, bend=0.25 * turns)
 
 
 def _arrow(start: np.ndarray, vector: np.ndarray, colour: str) -> list[Arrow]:
-    """Return the arrow of a force in a list; the list is empty for a force of zero."""
+    """Return the arrow from `start` along `vector`, (2,) in m each, in a list; an empty list for a zero
+    vector.
+    """
     end = start + vector
     return [Arrow(tuple(start), tuple(end), colour)] if np.hypot(*vector) > 0.0 else []
 
 
 def _kilo(newtons: float) -> str:
-    """Return a force in N as text in kN."""
+    """Return a force given in N as text in kN with three digits, without the unit."""
     return format_number(newtons / 1e3)
 
 
@@ -216,12 +227,12 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     Parameters
     ----------
     frequencies : pd.DataFrame
-        Table `frequencies` of stage modal.
+        Table `frequencies` of stage modal: order, class, symbols, multiplicity.
 
     Returns
     -------
     list[tuple[int, ...]]
-        Orders of the modes of each kind.
+        Orders (numbers from low to high frequency) of the modes of each kind, sorted.
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     modes = []
@@ -240,7 +251,8 @@ def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
     Parameters
     ----------
     shapes : DataFrame
-        Table `shapes` of stage modal.
+        Table `shapes` of stage modal: order and amplitude_m_or_rad, a row for each mode and degree of
+        freedom.
     orders : tuple of int
         Numbers of the modes.
 
@@ -258,19 +270,21 @@ def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
 
 
 def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
-    """Draw bars over all DOF, relative to the largest in the mode (m and rad alike, as in the paper).
+    """Draw the modes of `typical_modes` as bars over all degrees of freedom, relative to the largest one.
+
+    Metres and radians are compared as numbers, as in the paper.
 
     Parameters
     ----------
     frequencies : pd.DataFrame
-        Table `frequencies` of stage modal.
+        Table `frequencies` of stage modal: order, frequency_hz, class, symbols, multiplicity.
     shapes : pd.DataFrame
-        Table `shapes` of stage modal.
+        Table `shapes` of stage modal: order, body, amplitude_m_or_rad; x, y, z, rotation of each body.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each kind of mode.
     """
     by_order = frequencies.set_index("order")
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
@@ -292,7 +306,9 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
 
 
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
-    """Return the title of a mode's panel: numbers, frequency and symbols."""
+    """Return the title of a mode's panel: orders, frequency (Hz) and symbols. `mode`: its row of table
+    `frequencies`; several orders share one frequency.
+    """
     if len(orders) == 1:
         return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
     order_text = (
@@ -314,7 +330,7 @@ def modal_figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figu
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        The figure of `mode_shapes`.
     """
     return (mode_shapes(frequencies, shapes),)
 

@@ -30,7 +30,7 @@ class ColourScale:
 
     @property
     def label(self) -> str:
-        """Name and unit in brackets."""
+        """Text beside the bar of colours: name with the unit in brackets."""
         return with_unit(self.name, self.unit)
 
 
@@ -251,6 +251,6 @@ def with_unit(name: str, unit: str) -> str:
     Returns
     -------
     str
-        The name with the unit in brackets.
+        The name with the unit in brackets; the name alone for an empty unit.
     """
     return f"{name} ({unit})" if unit else name

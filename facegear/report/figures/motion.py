@@ -34,7 +34,7 @@ def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.
     Parameters
     ----------
     sweep : DataFrame
-        Tidy table of a sweep.
+        Table `sweep` of stage dynamics_sweep: direction, speed_rpm, quantity, body_or_mesh, value.
     direction : str
         `up` or `down`.
     quantity : str
@@ -45,7 +45,7 @@ def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.
     Returns
     -------
     DataFrame
-        The rows.
+        Rows of this direction, quantity and item, with all columns.
     """
     rows = sweep[
         (sweep["direction"] == direction) & (sweep["quantity"] == quantity) & (sweep["body_or_mesh"] == item)
@@ -59,23 +59,23 @@ def speed_axis(sweep: pd.DataFrame) -> Axis:
     Parameters
     ----------
     sweep : DataFrame
-        Tidy table of a sweep.
+        Table `sweep` of stage dynamics_sweep; column speed_rpm is read.
 
     Returns
     -------
     Axis
-        The axis, rpm.
+        The axis, rpm, from 0 to the largest speed.
     """
     return Axis("Input speed", "rpm", low=0.0, high=float(sweep["speed_rpm"].max()))
 
 
 def rms_axis() -> Axis:
-    """Return the axis of the RMS without mean of a mesh deflection.
+    """Return the axis of the RMS of a mesh deflection d along the line of action, without its mean.
 
     Returns
     -------
     Axis
-        The axis, µm.
+        The axis, µm, from 0.
     """
     return Axis("RMS of d", "µm", low=0.0)
 
@@ -87,7 +87,7 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
     Parameters
     ----------
     sweep : DataFrame
-        Tidy table of a sweep.
+        Table `sweep` of stage dynamics_sweep, as `select` reads it.
     bodies : sequence of str
         Names of the bodies.
     letters : str
@@ -96,7 +96,7 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
     Returns
     -------
     Figure
-        The figure.
+        A panel for each body, RMS in µm over rpm.
     """
     direction = sweep["direction"].iloc[0]
     panels = []
@@ -124,9 +124,9 @@ def mesh_sweeps(
     Parameters
     ----------
     sweep : DataFrame
-        Tidy table of a sweep.
+        Table `sweep` of stage dynamics_sweep, as `select` reads it.
     jumps : DataFrame
-        Table of the jumps of the sweep.
+        Table `jumps` of stage dynamics_sweep: direction, kind, speed_after_rpm.
     pinions : sequence of str
         Names of the pinions.
     sides : sequence of str
@@ -135,7 +135,7 @@ def mesh_sweeps(
     Returns
     -------
     Figure
-        The figure.
+        A panel for each side and pinion, RMS in µm over rpm.
     """
     panels = []
     for pinion, side in [(pinion, side) for side in sides for pinion in pinions]:
@@ -162,12 +162,12 @@ def jump_ticks(jumps: pd.DataFrame) -> Iterator[Line]:
     Parameters
     ----------
     jumps : DataFrame
-        Table of the jumps of a sweep.
+        Table `jumps` of stage dynamics_sweep: direction, kind, speed_after_rpm.
 
     Yields
     ------
     Line
-        A short tick; a dotted one where irregular motion begins or ends.
+        A short tick at the speed after the jump; a dotted one where irregular motion begins or ends.
     """
     for jump in jumps.itertuples():
         colour, _ = DIRECTION_STYLES[jump.direction]
@@ -191,7 +191,7 @@ def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]
     Parameters
     ----------
     sweeps : mapping of str to DataFrame
-        Tidy table of the sweep of each machine by its label.
+        Table `sweep` of stage dynamics_sweep of each machine by its label.
     meshes : sequence of str
         Names of the meshes, a panel for each.
 
@@ -243,16 +243,18 @@ def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequenc
     Parameters
     ----------
     response : DataFrame
-        Deflections, µm, over mesh cycles, of which at most SHOWN_CYCLES are drawn.
+        Table `response` of stage dynamics_response: mesh, mesh_cycle, deflection_um; at most SHOWN_CYCLES
+        cycles are drawn.
     spectrum : DataFrame
-        Amplitudes, µm, over orders, drawn up to SHOWN_ORDERS times the mesh frequency.
+        Table `spectrum` of that stage: mesh, order (multiple of the mesh frequency), amplitude_um;
+        drawn up to SHOWN_ORDERS.
     pinions : sequence of str
         Names of the pinions.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels beside each other for each pinion: history and spectrum.
     """
     last = float(min(SHOWN_CYCLES, response["mesh_cycle"].max()))
     cycles, orders = (
@@ -277,7 +279,12 @@ def deflections(response: pd.DataFrame, spectrum: pd.DataFrame, pinions: Sequenc
 
 
 def _lines(spectrum: pd.DataFrame, side: str) -> Curve:
-    """Return amplitudes as vertical lines at their orders, without order 0, which is the mean."""
+    """Return the amplitudes (µm) of one mesh as vertical lines at their orders (multiples of the mesh
+    frequency), above order 0, the mean, up to SHOWN_ORDERS. Lines of both gears stand APART beside
+    their order.
+
+    spectrum: rows of table `spectrum` of one mesh; side: `upper` or `lower`.
+    """
     colour, _ = SIDE_STYLES[side]
     rows = spectrum[(spectrum["order"] > 0.0) & (spectrum["order"] <= SHOWN_ORDERS)]
     rows = rows[rows["amplitude_um"] > VISIBLE * rows["amplitude_um"].max()]
@@ -308,19 +315,24 @@ class DrawnMachine:
 
     @property
     def gears(self) -> list[str]:
-        """Names of the face gears, lower one first."""
+        """Names `lower face gear` and `upper face gear`, the lower one first, as far as `sides` holds
+        them.
+        """
         return [f"{side} face gear" for side in reversed(self.sides)]
 
     @property
     def meshes(self) -> list[str]:
-        """Names of the meshes in the order of the arrays."""
+        """Names `pinion/side` of all meshes in the order of the arrays: all pinions with the lower gear
+        first.
+        """
         return [f"{name}/{side}" for side in reversed(self.sides) for name in self.pinions]
 
 
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMachine:
     """Choose the pinions that figures show.
 
-    Of pinions with the same role and torque only the first is shown; all are shown where parts differ singly.
+    Of pinions with the same role and torque only the first is shown. All are shown if the config gives
+    values of single pinions, meshes or gears.
 
     Parameters
     ----------
@@ -347,13 +359,17 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMa
 
 
 def _waterfall(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
-    """Draw the spectra of the last shown pinion's first mesh."""
+    """Draw the waterfall of the last shown pinion's mesh with the first of the sides. `tables`: arrays
+    `waterfall` of stage dynamics_sweep by that name.
+    """
     mesh_name = f"{machine.pinions_shown[-1]}/{machine.sides[0]}"
     return waterfall(tables["waterfall"], machine.meshes.index(mesh_name), mesh_name, machine.teeth)
 
 
 def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
-    """Draw the Campbell diagram up to the last speed of the sweep."""
+    """Draw the Campbell diagram up to the largest speed of the sweep. `tables`: tables frequencies,
+    resonances, jumps and sweep by name.
+    """
     last = tables["sweep"]["speed_rpm"].max()
     return campbell(tables["frequencies"], tables["resonances"], tables["jumps"], machine.teeth, last)
 
@@ -398,7 +414,7 @@ def dynamics_figures(
     Returns
     -------
     list of Figure
-        The figures.
+        Deflections of all pinions, then the figures in the order of SWEEP_FIGURES.
     """
     machine = drawn_machine(transmission, pinion_teeth)
     nominal = deflections(response, spectrum, machine.pinions)

@@ -60,7 +60,7 @@ def traces(target: PlotlyAxes, mark: Any) -> list[Part]:
     Parameters
     ----------
     target : PlotlyAxes
-        Where it is drawn.
+        Panel with plotly's names of its axes.
     mark : Mark
         The mark.
 
@@ -73,12 +73,12 @@ def traces(target: PlotlyAxes, mark: Any) -> list[Part]:
 
 
 def shape(target: PlotlyAxes, mark: Line | Span) -> Part:
-    """Return a line or band across a panel.
+    """Return plotly's shape of a line or band across a panel, below its traces.
 
     Parameters
     ----------
     target : PlotlyAxes
-        Where it is drawn.
+        Panel with plotly's names of its axes.
     mark : Line or Span
         The mark.
 
@@ -103,12 +103,12 @@ def shape(target: PlotlyAxes, mark: Line | Span) -> Part:
 
 
 def note(target: PlotlyAxes, mark: Text) -> Part:
-    """Return a text at a point of the data.
+    """Return plotly's annotation of a text at a point of the data.
 
     Parameters
     ----------
     target : PlotlyAxes
-        Where it is drawn.
+        Panel with plotly's names of its axes.
     mark : Text
         The mark.
 
@@ -133,7 +133,7 @@ def note(target: PlotlyAxes, mark: Text) -> Part:
 
 
 def key_trace(key: Key) -> Part:
-    """Return an entry of the legend that no trace gives.
+    """Return a trace without points, which puts an entry into the legend that no other trace gives.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def key_trace(key: Key) -> Part:
     Returns
     -------
     dict
-        A trace without points.
+        Trace of plotly.js.
     """
     blank = {"type": "scatter", "x": [None], "y": [None], "showlegend": True, "name": legend_text(key.name)}
     if key.area:
@@ -160,7 +160,7 @@ def level_bar(target: PlotlyAxes, scale: ColourScale, middle: tuple[float, float
     Parameters
     ----------
     target : PlotlyAxes
-        Where it is drawn.
+        Panel with plotly's names of its axes.
     scale : ColourScale
         The scale with its levels.
     middle : tuple of float
@@ -212,7 +212,7 @@ def level_colours(scale: ColourScale) -> list[str]:
     Returns
     -------
     list of str
-        One colour between two levels each.
+        Colours `#rrggbb`, evenly spaced on the scale, from the lowest interval to the highest.
     """
     count = len(scale.levels) - 1
     return scale_colours(
@@ -221,12 +221,12 @@ def level_colours(scale: ColourScale) -> list[str]:
 
 
 def _line_look(mark: Curve | Line | Key) -> Part:
-    """Return plotly's attributes of a line."""
+    """Return plotly's attributes of a line: colour, width (px) and dash."""
     return {"color": mark.colour, "width": round(PIXELS * mark.width, 2), "dash": mark.line}
 
 
 def _marker(marker: str, colour: str, size: float, hollow: bool) -> Part:
-    """Return plotly's attributes of a marker."""
+    """Return plotly's attributes of a marker of `size` points (1/72 inch): symbol, colour and size, px."""
     symbol = SYMBOLS.get(marker, marker)
     is_open = hollow and not symbol.endswith("-open")
     across = PIXELS * size * (0.5 if marker == "dot" else 1.0)
@@ -234,7 +234,9 @@ def _marker(marker: str, colour: str, size: float, hollow: bool) -> Part:
 
 
 def _identity(target: PlotlyAxes, name: str, colour: str, in_legend: bool = True) -> Part:
-    """Name of a trace and its place in the legend."""
+    """Return name, legend group and legend flag of a trace; without a name it takes that of the panel's
+    y axis and stands in no legend.
+    """
     return {
         "name": legend_text(name) if name else markup(target.panel.y.name),
         "legendgroup": f"{name} {colour}" if name else "",
@@ -243,7 +245,7 @@ def _identity(target: PlotlyAxes, name: str, colour: str, in_legend: bool = True
 
 
 def _curve(target: PlotlyAxes, mark: Curve) -> Iterator[Part]:
-    """Yield the trace of a curve."""
+    """Yield the trace of a curve with its line and markers."""
     mode = "+".join(["lines"] * (mark.line != "none") + ["markers"] * bool(mark.marker))
     look = _line_look(mark) if mark.line != "none" else {"color": mark.colour}
     yield {
@@ -261,7 +263,7 @@ def _curve(target: PlotlyAxes, mark: Curve) -> Iterator[Part]:
 
 
 def _scatter(target: PlotlyAxes, mark: Scatter) -> Iterator[Part]:
-    """Yield the trace of points of different sizes and colours."""
+    """Yield the trace of points with their sizes, in one colour or coloured by their values."""
     marker: Part = _marker(mark.marker, mark.colour, 1.0, False)
     marker["size"] = numbers(PIXELS * np.asarray(mark.sizes), 3)
     value = ""
@@ -281,7 +283,9 @@ def _scatter(target: PlotlyAxes, mark: Scatter) -> Iterator[Part]:
 
 
 def _bars(target: PlotlyAxes, mark: Bars) -> Iterator[Part]:
-    """Yield the trace of bars, flat or upright."""
+    """Yield the trace of bars, lying if `flat`, with error bars; the pointer shows a bar's position, by
+    its tick's name if it has one, and its length.
+    """
     axis = target.panel.y if mark.flat else target.panel.x
     names = {round(place_of, 6): name for place_of, name in axis.ticks}
     base = np.zeros_like(mark.lengths) if mark.base is None else mark.base
@@ -314,7 +318,9 @@ def _bars(target: PlotlyAxes, mark: Bars) -> Iterator[Part]:
 
 
 def _filled_area(target: PlotlyAxes, x: Array, y: Array, colour: str, name: str = "") -> Part:
-    """Return the trace of a filled polygon without outline."""
+    """Return the trace of a filled polygon (x, y of its ring (n,), parts separated by nan) without
+    outline; it stands in no legend and shows nothing beside the pointer.
+    """
     return {
         "type": "scatter",
         "mode": "lines",
@@ -331,20 +337,22 @@ def _filled_area(target: PlotlyAxes, x: Array, y: Array, colour: str, name: str 
 
 
 def _band(target: PlotlyAxes, mark: Band) -> Iterator[Part]:
-    """Yield the trace of the area between two curves."""
+    """Yield the area between the two curves of a band as a filled polygon."""
     x, low, high = (np.asarray(values, dtype=float) for values in (mark.x, mark.low, mark.high))
     ring = np.concatenate([x, x[::-1]]), np.concatenate([low, high[::-1]])
     yield _filled_area(target, *ring, css_colour(mark.colour, mark.opacity), mark.name)
 
 
 def _area(target: PlotlyAxes, mark: Area) -> Iterator[Part]:
-    """Yield the trace of a filled polygon."""
+    """Yield the trace of a filled polygon, with an outline if it has a colour for it."""
     area = _filled_area(target, mark.x, mark.y, css_colour(mark.colour, mark.opacity), mark.name)
     yield {**area, "line": {"width": 1, "color": mark.outline}} if mark.outline else area
 
 
 def _colouring(scale: ColourScale, letter: str) -> Part:
-    """Return plotly's attributes of a colour scale."""
+    """Return plotly's attributes of a colour scale in STEPS colours, without its bar. `letter`: `c` for
+    markers, `z` for maps.
+    """
     positions = np.linspace(0.0, 1.0, STEPS)
     colours = scale_colours(scale.colours, positions)
     return {
@@ -356,7 +364,7 @@ def _colouring(scale: ColourScale, letter: str) -> Part:
 
 
 def _map(target: PlotlyAxes, mark: Map) -> Iterator[Part]:
-    """Yield the trace of a field in colours on a grid."""
+    """Yield the heatmap of a field on a grid; uneven rows are interpolated to even ones."""
     x, y, values = straight(mark)
     value = f"{markup(mark.scale.name)} %{{z:{VALUE_FORMAT}}} {markup(mark.scale.unit)}"
     yield {
@@ -375,7 +383,9 @@ def _map(target: PlotlyAxes, mark: Map) -> Iterator[Part]:
 
 
 def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
-    """Yield the traces of a field as filled contours."""
+    """Yield a filled area for each step between two levels of a field; values below the first level
+    count as that.
+    """
     levels = mark.scale.levels
     values = np.ma.masked_invalid(mark.values).clip(levels[0], None)
     between = contour_generator(mark.x, mark.y, values, fill_type=FillType.OuterOffset)
@@ -393,7 +403,7 @@ def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
 
 
 def _faces(target: PlotlyAxes, mark: Faces) -> Iterator[Part]:
-    """Yield the traces of coloured polygons, one for all polygons of a colour."""
+    """Yield polygons as filled areas, one trace for all polygons of the same of STEPS colours."""
     values = np.asarray(mark.values, dtype=float)
     low, high = values.min(), values.max()
     step = np.minimum(((values - low) / ((high - low) or 1.0) * STEPS).astype(int), STEPS - 1)

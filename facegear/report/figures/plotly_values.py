@@ -40,7 +40,7 @@ class PlotlyAxes:
 
     @property
     def axes(self) -> Part:
-        """Axes of a trace."""
+        """Attributes by which a trace names its axes, `xaxis` and `yaxis`."""
         return {"xaxis": self.x, "yaxis": self.y}
 
     def hover_template(self, value: str = "") -> str:
@@ -49,12 +49,13 @@ class PlotlyAxes:
         Parameters
         ----------
         value : str
-            A third value, as its template.
+            Template of a third value, such as the colour's; empty for none.
 
         Returns
         -------
         str
-            The template.
+            Template of plotly.js with x, y and `value`, or with y alone unless `closest` or a `value`
+            is given.
         """
         x, y = (
             f"{markup(axis.name)} %{{{letter}:{digits}}} {markup(axis.unit)}"
@@ -69,7 +70,7 @@ class PlotlyAxes:
 
 
 def markup(text: str) -> str:
-    """Write plain text as plotly.js takes it.
+    """Write plain text as plotly.js takes it: HTML characters escaped, `<br>` for line ends.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def markup(text: str) -> str:
 
 
 def legend_text(name: str) -> str:
-    """Write a name as the legend of plotly.js takes it.
+    """Write a name as the legend of plotly.js takes it, in lines of at most LEGEND_LETTERS letters.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def legend_text(name: str) -> str:
 
 
 def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
-    """Round values, and put None where there is none.
+    """Round values to significant digits as a list for JSON; None stands for nan and infinite values.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
     Returns
     -------
     list of float or None
-        The numbers in one row.
+        The numbers in one row, in the order of their rows.
     """
     flat_values = np.ravel(np.asarray(values, dtype=float))
     return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in flat_values]
@@ -132,7 +133,7 @@ def css_colour(colour: str, opacity: float) -> str:
     Returns
     -------
     str
-        The colour.
+        `#rrggbb` from an opacity of 1 on, else `rgba(red,green,blue,opacity)`.
     """
     if opacity >= 1.0:
         return colour
@@ -141,12 +142,13 @@ def css_colour(colour: str, opacity: float) -> str:
 
 
 def straight(mark: Map) -> tuple[Array, Array, Array]:
-    """Return a map on straight rows and columns.
+    """Return a map with one x for each column and one y for each row; rows of other heights are
+    interpolated.
 
     Parameters
     ----------
     mark : Map
-        The map, whose columns stand straight.
+        The map; all points of a column must have one x, or ValueError is raised.
 
     Returns
     -------
@@ -167,7 +169,12 @@ def straight(mark: Map) -> tuple[Array, Array, Array]:
 
 
 def _even_rows(y: Array, values: Array) -> tuple[Array, Array]:
-    """Interpolate a field, whose rows have other heights in each column, to even heights."""
+    """Interpolate a field, whose rows have other heights in each column, linearly along each column to
+    ROWS even heights.
+
+    y, values: (rows, columns), heights and values, nan where there is none. Returns heights (ROWS,) and
+    values (ROWS, columns).
+    """
     heights = np.linspace(y.min(), y.max(), ROWS)
     even = np.full((ROWS, y.shape[1]), np.nan)
     at = heights[:, None]

@@ -31,9 +31,9 @@ def shafts_figures(
     Parameters
     ----------
     bearings : DataFrame
-        Forces on the bearings of the shafts, N.
+        Forces on the bearings of the shafts: pinion, bearing (letter), radial_n.
     deflections : DataFrame
-        Deflections along the shafts, µm over mm.
+        Deflections along the shafts: pinion, at_mm, x_um, y_um.
     transmission : Transmission
         Section `transmission` of the config.
     teeth : ToothNumbers
@@ -70,9 +70,10 @@ def shafts_figure(
     sections : mapping of str to ShaftSection
         Shaft of each pinion by the pinion's name.
     bearings : DataFrame
-        Forces on the bearings of the shafts, N.
+        Forces on the bearings of the shafts: pinion, bearing (letter), radial_n.
     deflections : DataFrame
-        Deflections along the shafts, µm over mm.
+        Deflections along the shafts: pinion, at_mm (from the inner end), x_um (tangential to the gear),
+        y_um (along the gear's axis).
     radius_mm : float
         Pitch radius of the pinions, mm.
     width_mm : float or None
@@ -81,7 +82,7 @@ def shafts_figure(
     Returns
     -------
     Figure
-        The figure.
+        Two panels for each group of equal shafts.
     """
     panels = []
     for names in _group_equal_shafts(sections, bearings, deflections):
@@ -116,7 +117,9 @@ def shafts_figure(
 def _group_equal_shafts(
     sections: Mapping[str, ShaftSection], bearings: pd.DataFrame, deflections: pd.DataFrame
 ) -> list[list[str]]:
-    """Group the names of the pinions whose shafts, bearing forces and deflections are equal."""
+    """Return the names of the pinions in groups of equal shafts: equal sections, and radial bearing
+    forces (N) and deflections (µm) that agree within 1e-4 relative or 1e-3 absolute.
+    """
     groups: list[tuple[ShaftSection, Array, list[str]]] = []
     for name, section in sections.items():
         forces = bearings.loc[bearings["pinion"] == name, "radial_n"].to_numpy(dtype=float)
@@ -137,7 +140,12 @@ def _side_view(
     radius_mm: float,
     width_mm: float | None,
 ) -> tuple[list[Area | Curve | Text], float]:
-    """Return the marks of a shaft with its pinion, bearings and forces, and its largest radius (mm)."""
+    """Return the marks of a shaft's side view (mm along the shaft and from its axis): segments with
+    their bores, pinion, bearings with their radial forces (kN); and its largest radius, mm.
+
+    bearings: rows of the bearing table of this shaft; radius_mm: pitch radius; width_mm: face width of
+    the pinion, None if unknown.
+    """
     marks: list[Area | Curve | Text] = []
     begin = 0.0
     for segment in section.segments:
@@ -163,15 +171,15 @@ def _side_view(
 
 
 def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
-    """Return the corners x, y (5,) of a closed rectangle about the axis, from its begin, length and half
-    height.
+    """Return the corners x, y (5,) of a closed rectangle about the shaft's axis, from its begin and
+    length along the axis and its half height, all in mm.
     """
     end = begin + length
     return np.array([begin, end, end, begin, begin]), half * np.array([-1.0, -1.0, 1.0, 1.0, -1.0])
 
 
 def _diameter_at(section: ShaftSection, at: float) -> float:
-    """Return the diameter (mm) of a shaft at a distance from its beginning (mm): the larger one at a step."""
+    """Return the diameter (mm) of a shaft at a distance (mm) from its inner end: the larger one at a step."""
     ends = np.cumsum([0.0, *(segment.length_mm for segment in section.segments)])
     diameters = [
         segment.diameter_mm

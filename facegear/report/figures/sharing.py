@@ -40,9 +40,11 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
     Parameters
     ----------
     curves : DataFrame
-        Coefficients of one study over time, s, with their envelopes.
+        A table `studies` of stage load_sharing_summary, of one study: study, point, label, kind, group,
+        time_s, coefficient, envelope_low and envelope_high.
     summary : DataFrame
-        Mean, half width and class of motion of each point.
+        Table `summary` of stage load_sharing_summary: study, point, group, mean, half_width,
+        undefined_fraction and motion (class).
     kind : str
         Kind of group, `inputs` or `idlers`.
     title : str
@@ -51,7 +53,7 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
     Returns
     -------
     Figure
-        The figure.
+        One panel over time, ms.
     """
     rows = curves[curves["kind"] == kind]
     group = rows["group"].iloc[0]
@@ -74,7 +76,12 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
 
 
 def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band | Curve]:
-    """Yield one point's curve, its envelope if it has one, and a name with mean and class of motion."""
+    """Yield the curve of one point of a study over time (ms), below it its envelope if wider than
+    ENVELOPE, and the legend's name with mean, half-width and class of motion.
+
+    curve: the point's rows of the curves; mean: its row of the summary; number: of the point, for
+    colour and line.
+    """
     colour = colour_of(number)
     if mean["motion"] == "period-1":
         curve = _close_cycle(curve)
@@ -89,7 +96,9 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
 
 
 def _close_cycle(curve: pd.DataFrame) -> pd.DataFrame:
-    """Return the samples of one cycle of a period-one motion with its first sample repeated at the end."""
+    """Return the samples of one cycle of a period-one motion with the first one repeated one time step
+    (time_s) after the last.
+    """
     end = curve.iloc[[0]].copy()
     end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
     return pd.concat([curve, end], ignore_index=True)
@@ -106,9 +115,9 @@ def load_sharing_figures(
     Parameters
     ----------
     studies : sequence of DataFrame
-        Curves of each study.
+        Curves of each study, as `sharing_figure` reads them.
     summary : DataFrame
-        Means and classes of motion of all studies.
+        Table `summary` of stage load_sharing_summary.
     titles : sequence of str
         Title of each study.
     groups : sequence of str
@@ -140,14 +149,15 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
     Parameters
     ----------
     cycles : DataFrame
-        Mean load of each mesh in each mesh cycle, N.
+        Table `cycles` of stage hunting: cycle (number of the mesh cycle) and the mean load of each mesh
+        in it in a column `<mesh> (N)`.
     meshes : DataFrame
-        Group of each mesh.
+        Table `meshes` of stage hunting: mesh and group; meshes without a group are left out.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each group, %; a dotted line is the even share.
     """
     panels = []
     for group in [name for name in meshes["group"].dropna().unique() if name]:
@@ -176,12 +186,13 @@ def bearing_figure(scan: pd.DataFrame) -> Figure:
     Parameters
     ----------
     scan : DataFrame
-        Table `scan` of stage hunting.
+        Table `scan` of stage hunting: varied (`inputs` or `idlers`, whose bearings vary), kind (of the
+        group), kinematics, stiffness_n_per_m, k_gamma.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels over stiffness, N/µm, logarithmic.
     """
     panels = []
     for role in ("inputs", "idlers"):
@@ -205,12 +216,12 @@ def sensitivity_figure(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : DataFrame
-        Change of K_gamma of each group by each error, 1/µm.
+        Change of K_gamma of each group by each error: group, error (name), per_um (1/µm, signed).
 
     Returns
     -------
     Figure
-        The figure.
+        Bars in 1e-3/µm, the largest on top.
     """
     largest = table.loc[table.groupby("error")["per_um"].apply(lambda rows: rows.abs().idxmax())]
     rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(MAX_BARS)[::-1]
@@ -248,7 +259,7 @@ def hunting_figures(
     Parameters
     ----------
     meshes, bearings, cycles, scan, sensitivity : DataFrame
-        Tables of stage hunting and its sensitivities.
+        Tables of stage hunting and its sensitivities, as the four figures read them.
     transmission : Transmission
         Section `transmission` of the config.
     teeth : ToothNumbers
@@ -257,7 +268,7 @@ def hunting_figures(
     Returns
     -------
     tuple of Figure
-        The figures.
+        Those of `layout_figure`, `hunting_figure`, `bearing_figure` and `sensitivity_figure`.
     """
     return (
         layout_figure(layout(transmission, teeth), meshes, bearings),
@@ -310,7 +321,8 @@ def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> lis
     Parameters
     ----------
     forces : DataFrame
-        Table `forces` of stage load_sharing; empty texts may be nan, as they are read from csv.
+        Table `forces` of stage study_forces, as `forces_figure` reads it; empty texts may be nan, as
+        they are read from csv.
     titles : mapping of str to str
         Title of each study by its name.
 
@@ -331,14 +343,15 @@ def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
     Parameters
     ----------
     forces : DataFrame
-        Rows of one study of table `forces` of stage load_sharing.
+        Rows of one study of table `forces`: mesh, group, axis (name and unit of the study's number),
+        number, beside (label of the other axis), fraction, largest_n, motion.
     title : str
         Title of the figure.
 
     Returns
     -------
     Figure
-        The figure.
+        Panels in pairs: fraction, %, and force, kN.
     """
     looks = mesh_looks(dict.fromkeys(forces["mesh"]))
     name, unit = split_label(str(forces["axis"].iloc[0]))
@@ -371,7 +384,12 @@ def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
 def _curves(
     rows: pd.DataFrame, looks: Mapping[str, Any], column: str, scale: float, in_legend: bool = True
 ) -> Iterator[Curve]:
-    """Yield a curve for each mesh; hollow marks show where the motion does not repeat with the mesh cycle."""
+    """Yield `scale` times a column over `number`, a curve for each mesh, and hollow marks where the
+    motion is not PERIODIC.
+
+    rows: rows of table `forces`; looks: colour and line by mesh, see `mesh_looks`; in_legend: whether
+    meshes stand in the legend.
+    """
     colours = list(dict.fromkeys(look["colour"] for look in looks.values()))
     for mesh, every in rows.groupby("mesh", sort=False):
         look = looks[str(mesh)]

@@ -17,7 +17,7 @@ def sharing_map_figures(
     Parameters
     ----------
     curves, inputs, points : DataFrame
-        Tables of stage sharing_map.
+        Tables of stage sharing_map, as `sharing_map_figure` reads them.
 
     Returns
     -------
@@ -28,19 +28,24 @@ def sharing_map_figures(
 
 
 def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> Figure:
-    """Draw K_gamma over the number that decides it: a panel for the idlers, and one for the inputs.
+    """Draw K_gamma over the dimensionless number that decides it: a panel for idlers, and one for inputs.
+
+    That is k_e sigma / W of idlers (stiffness of a path, standard deviation of its lateness, load of all
+    paths) and 2 b k / W of inputs (backlash, mesh stiffness, load of the input).
 
     Closed forms are broad grey lines where they hold; the machine is a point at each torque.
 
     Parameters
     ----------
     curves, inputs, points : DataFrame
-        Tables of stage sharing_map.
+        Tables of stage sharing_map, empty where there are no idlers or inputs. All have `number`; curves:
+        floating, all_carry, closed_p95, k_gamma_p50 to p99; inputs: bearing_n_per_m, k_gamma, closed;
+        points: kind, k_gamma_p95.
 
     Returns
     -------
     Figure
-        The figure.
+        Up to two panels.
     """
     panels = []
     if len(curves):
@@ -55,15 +60,18 @@ def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.Da
 
 
 def _machine(points: pd.DataFrame, kind: str) -> Curve:
-    """Return marks at the machine's K_gamma (P95) for each of its torques."""
+    """Return marks at K_gamma (95th percentile) of the machine over `number`, one for each of its
+    torques. `points`: table of stage sharing_map; kind: `idlers` or `inputs`.
+    """
     rows = points[points["kind"] == kind]
     at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
     return Curve(*at, "this machine", BLACK, "none", marker="circle", size=7.0)
 
 
 def _idlers(curves: pd.DataFrame) -> list[Curve]:
-    """Return curves of K_gamma (P95) of the idlers for each floating gear; of the machine as given other
-    percentiles, too.
+    """Return curves of K_gamma (95th percentile over drawn errors) of the idlers over `number`, one for
+    each choice of floating gears, with other percentiles for the machine as given, and the closed form
+    below where it holds.
     """
     broad: list[Curve] = []
     marks: list[Curve] = []
@@ -81,13 +89,17 @@ def _idlers(curves: pd.DataFrame) -> list[Curve]:
 
 
 def _is_close(rows: pd.DataFrame) -> bool:
-    """Return whether the closed form agrees with a curve within HOLDS wherever every path carries load."""
+    """Return whether the closed form of the 95th percentile is within HOLDS of the computed one,
+    relative, at all points where every path carries load in (nearly) all samples.
+    """
     valid = rows[rows["all_carry"] >= ALL_CARRY]
     return bool((valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs().max() < HOLDS)
 
 
 def _inputs(inputs: pd.DataFrame) -> list[Curve]:
-    """Return curves of the largest K_gamma of the inputs, one for each bearing stiffness."""
+    """Return curves of the largest K_gamma of all input groups over `number`, one for each bearing
+    stiffness (N/m), with the closed form below where it is within HOLDS.
+    """
     broad: list[Curve] = []
     marks: list[Curve] = []
     worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
@@ -101,5 +113,7 @@ def _inputs(inputs: pd.DataFrame) -> list[Curve]:
 
 
 def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
-    """Return the closed form as a broad grey line below the computed curve, in the legend once."""
+    """Return the closed form `values` over `number`, both (n,), as a broad grey line. Only the first
+    one stands in the legend.
+    """
     return Curve(number, values.to_numpy(), CLOSED_NAME, grey(0.8), width=4.0, in_legend=is_first)

@@ -21,12 +21,13 @@ def stiffness_curve(curve: pd.DataFrame) -> Figure:
     Parameters
     ----------
     curve : pd.DataFrame
-        Table `tvms` of stage stiffness.
+        Table `tvms` of stage stiffness: position (mesh periods), k_n_per_m, k_series_n_per_m (Fourier
+        sum).
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, N/µm over one period.
     """
     first = curve.iloc[[0]].assign(position=1.0)
     whole = pd.concat([curve, first], ignore_index=True)
@@ -39,19 +40,19 @@ def stiffness_curve(curve: pd.DataFrame) -> Figure:
 
 
 def harmonic_amplitudes(spectrum: pd.DataFrame, max_order: int = 15) -> Figure:
-    """Draw absolute amplitudes of the orders of the stiffness variation.
+    """Draw the amplitudes of the mesh stiffness at orders 1 to `max_order`, with their sampling errors.
 
     Parameters
     ----------
     spectrum : pd.DataFrame
-        Table `spectrum` of stage stiffness.
+        Table `spectrum` of stage stiffness: order, amplitude_n_per_m, sampling_error_n_per_m.
     max_order : int
         Number of the last order.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, N/µm.
     """
     rows = spectrum[(spectrum["order"] >= 1) & (spectrum["order"] <= max_order)]
     orders, heights = rows["order"].to_numpy(dtype=float), 1e-6 * rows["amplitude_n_per_m"].to_numpy()
@@ -70,12 +71,13 @@ def stiffness_against_load(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table of stage load_dependence.
+        Table of stage load_dependence: definition (`average` F / deflection or local slope), torque_n_m;
+        mean, min and max over a pitch, and amplitude_1 (first harmonic), all _n_per_m.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels over torque per mesh, N m.
     """
     above: list[Band | Curve] = []
     below = []
@@ -114,7 +116,7 @@ def stiffness_figures(tvms: pd.DataFrame, spectrum: pd.DataFrame) -> tuple[Figur
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `stiffness_curve` and `harmonic_amplitudes`.
     """
     return stiffness_curve(tvms), harmonic_amplitudes(spectrum)
 
@@ -125,7 +127,7 @@ def load_figures(table: pd.DataFrame) -> tuple[Figure, ...]:
     Parameters
     ----------
     table : pd.DataFrame
-        Table of stage load_dependence.
+        Table of stage load_dependence, as `stiffness_against_load` reads it.
 
     Returns
     -------
@@ -152,12 +154,12 @@ def force_lines(law: Arrays) -> Figure:
     Parameters
     ----------
     law : Arrays
-        Arrays `law` of stage mesh_law.
+        Arrays `law` of stage mesh_law; `level_m` (laws, levels) holds the deflections of the levels, m.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, kN over the mesh period, for the first law.
     """
     last = law["level_m"][0, -1]
     amounts = last * np.arange(1, LINES + 1) / LINES
@@ -181,12 +183,12 @@ def force_lines(law: Arrays) -> Figure:
 
 
 def force_surface(law: Arrays) -> Figure:
-    """Draw the force over phase and deflection.
+    """Draw the force (kN) over the phase of the mesh period and deflection (µm) up to the last level.
 
     Parameters
     ----------
     law : Arrays
-        Arrays `law` of stage mesh_law.
+        Arrays `law` of stage mesh_law, as for `force_lines`.
 
     Returns
     -------
@@ -220,7 +222,7 @@ def mesh_law_figures(law: Arrays) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `force_lines` and `force_surface`.
     """
     return force_lines(law), force_surface(law)
 
@@ -231,12 +233,14 @@ def loads_in_table(loads: pd.DataFrame) -> Figure:
     Parameters
     ----------
     loads : pd.DataFrame
-        Table `loads` of stage law_loads.
+        Table `loads` of stage law_loads: mesh; smallest_n, mean_n, largest_n at the nominal speed;
+        sweep_largest_n; last_level_n (mean force of the law's last level); past_fraction and
+        sweep_past_fraction (of the time beyond it).
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, kN, a row for each mesh.
     """
     rows = np.arange(len(loads))[::-1].astype(float)
     smallest, mean, largest = loads[["smallest_n", "mean_n", "largest_n"]].to_numpy().T / 1e3
@@ -281,7 +285,7 @@ def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Se
     Returns
     -------
     Figure
-        The figure.
+        A panel for each mesh, µm over rpm; at most as many laws as LAW_COLOURS.
     """
     panels = []
     for mesh in meshes:
@@ -300,7 +304,7 @@ def law_load_figures(
 ) -> list[Figure]:
     """Draw the loads in the table and, where studies have other laws, the sweeps of all of them.
 
-    Meshes are those of the first gear.
+    Sweeps are drawn for the meshes with the gear of the last mesh in `loads`.
 
     Parameters
     ----------

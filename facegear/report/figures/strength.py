@@ -41,12 +41,13 @@ def passage_figure(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `passage` of stage root_stress.
+        Table `passage` of stage root_stress: torque_n_m, body, fillet (`loaded` or `other`), passage
+        (pitches), largest_mpa, smallest_mpa (negative: compression).
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each body, where stress exceeds PART_SHOWN of the largest.
     """
     largest_stress = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
     positions = table.loc[largest_stress > PART_SHOWN * largest_stress.max(), "passage"]
@@ -60,18 +61,20 @@ def along_face_figure(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `along_face` of stage root_stress.
+        Table `along_face` of stage root_stress: the same columns, with radius_mm in place of passage.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each body, MPa over the distance from the gear's axis.
     """
     return _both_fillets_figure(table, "radius_mm", Axis("Gear radius", "mm"))
 
 
 def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
-    """Draw stress over a coordinate, a panel for each body, a colour for each torque."""
+    """Draw largest_mpa of the loaded fillet (solid) and smallest_mpa of the other (dashed) over a
+    column `coordinate` with axis `along`: a panel for each body, a colour for each torque.
+    """
     torques = np.sort(table["torque_n_m"].unique())
     panels = []
     for body, name in BODIES.items():
@@ -106,16 +109,17 @@ def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Fi
     Parameters
     ----------
     rating : pd.DataFrame
-        Table `rating` of stage rating.
+        Table `rating` of stage rating: body, gear, flank, failure, method, safety, required.
     damage : pd.DataFrame
-        Table `damage` of stage rating.
+        Table `damage` of stage rating: a row for each bin and rating, with bin, cycles, stress_mpa,
+        damage.
     curves : pd.DataFrame
-        Table `curves` of stage rating.
+        Table `curves` of stage rating: S-N curves, with cycles and allowed_mpa.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for bending and one for pitting, both logarithmic.
     """
     panels = []
     for failure, stress in (("bending", "Root stress"), ("pitting", "Contact stress")):
@@ -143,14 +147,14 @@ def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
     Parameters
     ----------
     rating : pd.DataFrame
-        Table `rating` of stage rating.
+        Table `rating` of stage rating, as for `life`.
     damage : pd.DataFrame
-        Table `damage` of stage rating.
+        Table `damage` of stage rating, as for `life`.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, logarithmic; its title names flanks without damage.
     """
     rows = list(_nearest(rating).itertuples())
     marks: list[Curve | Line] = [Line(1.0, "y")]
@@ -174,7 +178,9 @@ def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
 
 
 def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
-    """Return for pinions and face gears the flank that is nearest to each limit."""
+    """Return the rows of table `rating` with the smallest safety over required safety, one for each
+    gear (pinion or face gear), failure and method.
+    """
     spare = rating["safety"] / rating["required"]
     return rating.loc[
         spare.groupby([rating["gear"], rating["failure"], rating["method"]], sort=False).idxmin()
@@ -182,13 +188,15 @@ def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
 
 
 def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
-    """Return the rows of a table on the same body, flank, failure and method as another row."""
+    """Return the rows of a table with the same body, flank, failure and method as `row`, a row of table
+    `rating`.
+    """
     keys = ("body", "flank", "failure", "method")
     return table[np.logical_and.reduce([table[key] == getattr(row, key) for key in keys])]
 
 
 def _subject(row: Any) -> str:
-    """Return body, flank and method of a rating in words."""
+    """Return body, flank and method of `row`, a row of table `rating`, in words."""
     body = BODIES.get(row.body, row.body.capitalize())
     return f"{body}, {row.flank} flank, {row.method}"
 
@@ -206,7 +214,7 @@ def root_figures(passage: pd.DataFrame, along_face: pd.DataFrame) -> tuple[Figur
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `passage_figure` and `along_face_figure`.
     """
     return passage_figure(passage), along_face_figure(along_face)
 
@@ -226,7 +234,7 @@ def rating_figures(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFr
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `life` and `damage_by_bin`.
     """
     return life(rating, damage, curves), damage_by_bin(rating, damage)
 
@@ -252,14 +260,15 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
     Parameters
     ----------
     table : DataFrame
-        Table of stage stress_over_speed.
+        Table of stage stress_over_speed: motion (`sweep up`, `sweep down` or `branch ...`), speed_rpm,
+        keys of PANELS, within_torques_solved.
     speed_rpm : float
         Operating speed, rpm.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each key of PANELS.
     """
     branch_rows = table[table["motion"].str.startswith("branch ")]
     rows_within_torques = table[table["within_torques_solved"]]
@@ -296,6 +305,6 @@ def stress_over_speed_figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Fi
     Returns
     -------
     tuple of Figure
-        The figure.
+        The figure of `stress_over_speed`.
     """
     return (stress_over_speed(table, speed_rpm),)

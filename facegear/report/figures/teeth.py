@@ -46,7 +46,7 @@ def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure
     Returns
     -------
     Figure
-        The figure.
+        One panel in space, mm: all pinion teeth and 13 of the gear, lit from LIGHT.
     """
     design = record["design_si"]
     pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
@@ -87,14 +87,14 @@ def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Fi
     Returns
     -------
     Figure
-        The figure.
+        Two panels, mm: the pinion's section, and the gear's at three radii.
     """
     panels = [_pinion_section(record, flanks), _gear_sections(record, flanks)]
     return Figure(panels, shared_x=False, legend_title="face gear tooth at radius")
 
 
 def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
-    """Return grids (profile, 2, 3) of a pinion tooth from space to space: surface and visible end."""
+    """Return grids (profile, 2, 3), m, of a tooth from space to space: surface, one end down to `bore`."""
     half = flanks["pinion_section"][::8]
     section = np.concatenate([half[::-1], half * [-1, 1]])
     first, last = flanks["pinion_flank"][0, [0, -1], 1]
@@ -106,7 +106,7 @@ def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
 
 
 def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
-    """Return grids (profile, width, 3) of a gear tooth from space to space: its surface and its inner end."""
+    """Return grids (profile, width, 3), m, of a gear tooth from space to space: surface and inner end."""
     right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
     middle = np.stack([radius * np.sin(pi / teeth), radius * np.cos(pi / teeth), right[-1, :, 2]], axis=-1)
@@ -118,24 +118,24 @@ def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
 
 
 def _turned_pinion(points: Array, angle: float) -> Array:
-    """Rotate points (..., 3) about the pinion's axis by an angle (rad)."""
+    """Rotate points (..., 3) about the pinion's axis, y, by an angle (rad) that moves +x towards +z."""
     c, s = np.cos(angle), np.sin(angle)
     return points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
 
 
 def _turned_gear(points: Array, angle: float) -> Array:
-    """Rotate points (..., 3) about the gear's axis by an angle (rad)."""
+    """Rotate points (..., 3) about the gear's axis, z, by an angle (rad) that moves +y towards +x."""
     c, s = np.cos(angle), np.sin(angle)
     return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T
 
 
 def _quads(grid: Array) -> Array:
-    """Return the quadrilaterals (cells, 4, 3) between the points of a grid (n, m, 3)."""
+    """Return the quadrilaterals (cells, 4, 3), corners in cyclic order, of a grid of points (n, m, 3)."""
     return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
 
 
 def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
-    """Return the panel of a pinion tooth's section with its radii."""
+    """Return the panel of a pinion tooth's section (mm, tip upwards) with arcs and labels of RADII."""
     half = 1e3 * flanks["pinion_section"]
     tooth = np.concatenate([half[::-1], half * [-1, 1]])
     foot = half[:, 1].min() - 1.5
@@ -159,8 +159,7 @@ def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> P
 
 
 def path_text(record: Mapping[str, Any]) -> str:
-    """Say in words where the contact path lies along the face, and its nominal place where assembly errors
-    move it.
+    """Give the mean radius of the contact path, and the nominal one if any point is 0.005 mm off it.
 
     Parameters
     ----------
@@ -170,7 +169,7 @@ def path_text(record: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        The text.
+        The text, with radii from the gear's axis in mm.
     """
     path = np.asarray(record["unloaded"]["drive"]["path_pinion_y_mm"], dtype=float)
     nominal = float(record["radii_mm"]["gear_contact_path_nominal"])
@@ -179,7 +178,7 @@ def path_text(record: Mapping[str, Any]) -> str:
 
 
 def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
-    """Return the panel of a gear tooth's sections at three radii, with its limits."""
+    """Return the panel of a gear tooth's sections at three radii, z over arc length, mm, with limits."""
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
@@ -220,7 +219,7 @@ def separation(
     Returns
     -------
     Figure
-        The figure.
+        One panel: contours of the gap, µm, over gear radius and height z, mm.
     """
     is_facing = contact["contour_facing"].astype(bool)
     gap = np.where(is_facing, 1e6 * contact["contour_gap"], np.nan)
@@ -273,7 +272,7 @@ def tooth_pair_figures(
     Returns
     -------
     tuple of Figure
-        The figures.
+        Those of `tooth_pair`, `tooth_sections` and `separation`.
     """
     return tooth_pair(pair, flanks), tooth_sections(pair, flanks), separation(pair, flanks, contact)
 
@@ -295,14 +294,14 @@ def topography_figure(points: pd.DataFrame, body: str) -> Figure:
     Parameters
     ----------
     points : pd.DataFrame
-        Table `points` of stage topography.
+        Table `points` of stage topography: body, flank, face_mm, profile_mm, deviation_um (> 0: added).
     body : str
         `pinion` or `face_gear`.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each flank; deviations are exaggerated, HEIGHT of the profile at most.
     """
     body_points = points[points["body"] == body]
     largest = float(body_points["deviation_um"].abs().max())
@@ -325,7 +324,10 @@ def topography_figure(points: pd.DataFrame, body: str) -> Figure:
 
 
 def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
-    """Return the grid lines of one flank, each point displaced by its scaled deviation, and a scale bar."""
+    """Return lines of a flank, nominal and displaced by its deviations, areas between, and a scale bar.
+
+    flank: rows of table `points`; largest: deviation (µm) that is drawn HEIGHT profiles high.
+    """
     table = flank.pivot_table(index="profile_mm", columns="face_mm", values="deviation_um")
     face, profile, values = table.columns.to_numpy(float), table.index.to_numpy(float), table.to_numpy()
     up = HEIGHT * np.ptp(profile) * (-1.0 if flank["body"].iloc[0] == "face_gear" else 1.0) / (largest or 1.0)
@@ -353,7 +355,7 @@ def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
 
 
 def _between(face: Array, flat: Array, lifted: Array) -> tuple[Array, Array]:
-    """Return the outlines of the areas between each flat line and its displaced line, separated by nan."""
+    """Return outlines, parted by nan, of areas between `flat` and `lifted` (lines, n) over `face` (n,)."""
     across = np.concatenate([face, face[::-1]])
     return apart(across, np.concatenate([flat, lifted[:, ::-1]], axis=1))
 
@@ -381,7 +383,7 @@ def topography_figures(points: pd.DataFrame) -> tuple[Figure, ...]:
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `topography_figure` for `pinion` and `face_gear`.
     """
     return topography_figure(points, "pinion"), topography_figure(points, "face_gear")
 
@@ -393,9 +395,9 @@ def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
     Parameters
     ----------
     curves : mapping of (n,) arrays
-        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+        Arrays `<body>_drive_m` of stage tooth_errors: how early the drive flank touches over a turn, m.
     orders : DataFrame
-        Table `orders` of stage tooth_errors.
+        Table `orders` of stage tooth_errors: body, order (per turn), unloaded_um, loaded_um (amplitudes).
 
     Returns
     -------
@@ -434,7 +436,7 @@ def tooth_errors_figures(curves: Arrays, orders: pd.DataFrame) -> tuple[Figure, 
     Parameters
     ----------
     curves : mapping of (n,) arrays
-        Arrays `curves` of stage tooth_errors: by how much a flank touches early, m.
+        Arrays `curves` of stage tooth_errors, as `tooth_error_figure` reads them.
     orders : DataFrame
         Table `orders` of stage tooth_errors.
 

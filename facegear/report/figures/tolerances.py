@@ -69,12 +69,12 @@ def in_words(quantity: str) -> str:
     Parameters
     ----------
     quantity : str
-        Name of the column.
+        Name of the column: a word of WORDS and, after a space, a group.
 
     Returns
     -------
     str
-        The label.
+        Quantity and group with the unit in brackets.
     """
     return axis_of(quantity).label
 
@@ -85,7 +85,7 @@ def axis_of(quantity: str) -> Axis:
     Parameters
     ----------
     quantity : str
-        Name of the column.
+        Name of the column: a word of WORDS and, after a space, a group.
 
     Returns
     -------
@@ -98,12 +98,13 @@ def axis_of(quantity: str) -> Axis:
 
 
 def worst_first(percentiles: pd.DataFrame) -> list[str]:
-    """Sort path factors by their 99th percentile, the largest first, then what comes once a machine.
+    """List the MAX_PANELS columns `k_gamma ...` with the largest 99th percentiles, largest first, then
+    those of ONCE that were computed.
 
     Parameters
     ----------
     percentiles : pd.DataFrame
-        Table `percentiles` of stage tolerances.
+        Table `percentiles` of stage tolerances: quantity, percentile (0 to 100), value.
 
     Returns
     -------
@@ -121,14 +122,15 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
     Parameters
     ----------
     samples : pd.DataFrame
-        Table `samples` of stage tolerances.
+        Table `samples` of stage tolerances: a row for each sample, a column for each quantity and cause.
     percentiles : pd.DataFrame
-        Table `percentiles` of stage tolerances.
+        Table `percentiles` of stage tolerances: quantity, percentile, value, low and high end of its
+        interval.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each quantity of `worst_first`.
     """
     names = worst_first(percentiles)
     up = Axis("", "", low=0.0, high=100.0)
@@ -154,19 +156,22 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
 def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
     """Draw which cause decides: total Sobol indices where they were computed, else rank correlations.
 
+    The worst path's K_gamma and DECISIVE_QUANTITIES are shown, with the BARS causes of the largest bars.
+
     Parameters
     ----------
     percentiles : pd.DataFrame
-        Table `percentiles` of stage tolerances.
+        Table `percentiles` of stage tolerances, as `worst_first` reads it.
     importance : pd.DataFrame
-        Table `importance` of stage tolerances.
+        Table `importance` of stage tolerances: quantity, cause, rank_correlation (-1 to 1).
     indices : pd.DataFrame
-        Table `indices` of stage tolerances.
+        Table `indices` of stage tolerances, empty if not computed: quantity, cause, total, total_low,
+        total_high (ends of its interval).
 
     Returns
     -------
     Figure
-        The figure.
+        One panel of lying bars.
     """
     table, value = _sizes(importance, indices)
     quantities = worst_first(percentiles)
@@ -212,18 +217,18 @@ def scatter_figure(
     Parameters
     ----------
     samples : pd.DataFrame
-        Table `samples` of stage tolerances.
+        Table `samples` of stage tolerances: a row for each sample, a column for each quantity and cause.
     percentiles : pd.DataFrame
-        Table `percentiles` of stage tolerances.
+        Table `percentiles` of stage tolerances, as `worst_first` reads it.
     importance : pd.DataFrame
-        Table `importance` of stage tolerances.
+        Table `importance` of stage tolerances, as for `importance_figure`.
     indices : pd.DataFrame
-        Table `indices` of stage tolerances.
+        Table `indices` of stage tolerances; where it is not empty it decides which causes matter.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels, one for each cause; an empty one if no cause is known.
     """
     name = (worst_first(percentiles) or [""])[0]
     table, _ = _sizes(importance, indices)
@@ -251,12 +256,13 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : pd.DataFrame
-        Table `load_map` of stage tolerances_map.
+        Table `load_map` of stage tolerances_map: torque_factor (torque over the nominal one), speed_rpm,
+        quantity, percentile, value, low and high.
 
     Returns
     -------
     Figure
-        The figure.
+        One panel, over speed if there are several speeds, else over torque.
     """
     name = (worst_first(table) or [""])[0]
     quantity_rows = table[table["quantity"] == name]
@@ -294,13 +300,18 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
 
 
 def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFrame, str]:
-    """The table that tells what matters, with its size, and the column that holds it."""
+    """Return the table that tells which causes matter and the name of its decisive column: `indices`
+    and `total` if that is not empty, else `importance` and `rank_correlation`. Column `size` is added:
+    its magnitude.
+    """
     table, value = (indices, "total") if not indices.empty else (importance.dropna(), "rank_correlation")
     return table.assign(size=table[value].abs()), value
 
 
 def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Line | Span]:
-    """Yield the fraction of samples above each value, with percentiles and their intervals."""
+    """Yield the percentage of samples (n,) above each value as steps, with lines at percentiles and
+    strips over their intervals. `percentiles`: rows of one quantity.
+    """
     sorted_values = np.sort(values)
     above = 100.0 * (1.0 - np.arange(1, sorted_values.size + 1) / sorted_values.size)
     for row in percentiles.itertuples():
@@ -329,7 +340,7 @@ def tolerances_figures(
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `distribution_figure`, `importance_figure` and `scatter_figure`.
     """
     return (
         distribution_figure(samples, percentiles),
@@ -339,7 +350,7 @@ def tolerances_figures(
 
 
 def map_figures(load_map: pd.DataFrame) -> tuple[Figure, ...]:
-    """Draw K_gamma of the worst path over torque and speed.
+    """Draw median and 99th percentile of the worst path over torque and speed.
 
     Parameters
     ----------

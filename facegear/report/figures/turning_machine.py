@@ -40,9 +40,11 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
     Parameters
     ----------
     campbell : DataFrame
-        Frequencies of the modes over speed.
+        Modes over speed: line (number of a mode's curve), speed_rpm, frequency_hz, energy_fraction (in
+        the waves of one gear), nodal_diameters, forward_fraction.
     crossings : DataFrame
-        Table of crossings with mesh harmonics.
+        Crossings with mesh harmonics: harmonic, wave (key of MARKERS), speed_rpm, frequency_hz,
+        energy_fraction, phase_factor (magnitude 1: all phases add up).
     last_rpm : float
         Last speed of the pinions, rpm.
     teeth : int
@@ -51,7 +53,7 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
     Returns
     -------
     Figure
-        The figure.
+        One panel, kHz over rpm.
     """
     waves = crossings[crossings["energy_fraction"] >= IN_WAVES]
     bending = campbell[campbell["energy_fraction"] >= IN_WAVES]
@@ -102,7 +104,7 @@ def crossing_marks(crossings: pd.DataFrame) -> Iterator[Scatter]:
     Parameters
     ----------
     crossings : DataFrame
-        Table of crossings with mesh harmonics.
+        Crossings with mesh harmonics: wave, speed_rpm, frequency_hz, phase_factor.
 
     Yields
     ------
@@ -155,7 +157,10 @@ def frame(marks: Sequence[Mark], last_rpm: float, top: float) -> Panel:
 
 
 def _wave(line: pd.DataFrame) -> str:
-    """Return the kind of wave of a mode's line over speed: `standing`, `forward` or `backward`."""
+    """Return the kind of wave of a mode's line over speed: `standing` if most rows have 0 nodal
+    diameters, else `forward` (median forward_fraction from 0.5 on) or `backward`. `line`: its rows of
+    the Campbell table.
+    """
     if not line["nodal_diameters"].mode().iloc[0]:
         return "standing"
     return "forward" if np.median(line["forward_fraction"]) >= 0.5 else "backward"
@@ -169,9 +174,9 @@ def gear_waves_figures(
     Parameters
     ----------
     campbell : DataFrame
-        Frequencies of the modes over speed.
+        Modes over speed, as `machine_campbell` reads them.
     campbell_crossings : DataFrame
-        Table of crossings with mesh harmonics.
+        Crossings with mesh harmonics, as `machine_campbell` reads them.
     last_rpm : float
         Last speed of the pinions, rpm.
     teeth : int
@@ -201,14 +206,14 @@ def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
     Parameters
     ----------
     modes : DataFrame
-        Table `modes` of stage gear_bodies.
+        Table `modes` of stage gear_bodies: gear, nodal_diameters, mode, frequency_hz.
     shapes : mapping of (...) arrays
         Arrays of stage gear_bodies (see `facegear.parts.body_tables.shape_arrays`); nodes in m.
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each nodal diameter, mm: radius across, height up.
     """
     gear = str(modes["gear"].iloc[0]) if len(modes) else next(iter(shapes)).rpartition("_")[0]
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
@@ -232,7 +237,12 @@ def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
 
 
 def _section(nodes: Array, quads: AnyArray, shape: Array) -> list[Area | Faces]:
-    """Return the section at rest, and displaced by the exaggerated mode shape."""
+    """Return the section at rest, and displaced by the exaggerated mode shape, coloured by its
+    magnitude.
+
+    nodes: (n, 2) radius and height, mm; quads: (cells, 4) node indices; shape: (n, 3) radial,
+    tangential and axial displacement in any unit.
+    """
     swing = SWING * np.ptp(nodes[:, 0]) / np.abs(shape).max()
     displaced_nodes = nodes + swing * shape[:, [0, 2]]
     size = np.linalg.norm(shape, axis=1)[quads].mean(axis=1)
@@ -249,12 +259,13 @@ def body_waves(modes: pd.DataFrame) -> Figure:
     Parameters
     ----------
     modes : pd.DataFrame
-        Table `modes` of stage gear_bodies.
+        Table `modes` of stage gear_bodies: gear, nodal_diameters, frequency_hz (at rest), forward_hz and
+        backward_hz (in space).
 
     Returns
     -------
     Figure
-        The figure.
+        A panel for each gear, kHz.
     """
     orders = Axis("Nodal diameters", "", integer=True)
     panels = []
@@ -280,9 +291,9 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
     Parameters
     ----------
     modes : pd.DataFrame
-        Table `modes` of stage gear_bodies.
+        Table `modes` of stage gear_bodies, as for `body_waves`, with speed_rpm, at which waves are given.
     crossings : pd.DataFrame
-        Table `crossings` of stage gear_bodies.
+        Table `crossings` of stage gear_bodies: gear and the columns of `crossing_marks`, and harmonic.
     last_rpm : float
         Last speed of the pinions, rpm.
     teeth : int
@@ -291,7 +302,7 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
     Returns
     -------
     Figure
-        The figure.
+        One panel, kHz over rpm.
     """
     gear = modes["gear"].iloc[0] if len(modes) else ""
     gear_modes, gear_crossings = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
@@ -315,11 +326,11 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
 
 
 def _gear_bodies_wave(frequency: float, middle: float, shift: float, at: float, speeds: Array) -> Array:
-    """Return a wave's frequency, Hz, over `speeds`: its square and its shift grow with the speed squared and
-    the speed.
+    """Return a wave's frequency, Hz, over `speeds` (n,), rpm: with x = speeds / at it is
+    sqrt(frequency² + (middle² - frequency²) x²) + shift x.
 
-    `frequency` is at rest; `middle` (mean of forward and backward wave) and `shift` hold at the speed `at`,
-    Hz and rpm.
+    frequency: at rest, Hz; middle: mean of forward and backward wave, Hz, and shift: half of their
+    difference, Hz, negative for the backward wave, both at the speed `at`, rpm.
     """
     over = speeds / at
     return np.asarray(
@@ -352,7 +363,7 @@ def gear_bodies_figures(
     Returns
     -------
     tuple[Figure, ...]
-        The figures.
+        Those of `body_shapes`, `body_waves` and `body_campbell`.
     """
     campbell = body_campbell(modes, crossings, last_rpm, teeth)
     return body_shapes(modes, shapes), body_waves(modes), campbell
@@ -372,7 +383,7 @@ def shaft_orders_figures(orders: pd.DataFrame, over_speed: pd.DataFrame) -> tupl
     Parameters
     ----------
     orders : pd.DataFrame
-        Table `orders` of stage shaft_orders.
+        Table `orders` of stage shaft_orders, as `shaft_order_figure` reads it.
     over_speed : pd.DataFrame
         Table `over_speed` of stage shaft_orders.
 
@@ -390,14 +401,15 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
     Parameters
     ----------
     orders : pd.DataFrame
-        Table `orders` of stage shaft_orders.
+        Table `orders` of stage shaft_orders: turning (key of GEARS), of_mesh (frequency over the mesh
+        frequency), force_n.
     over_speed : pd.DataFrame
-        Table `over_speed` of stage shaft_orders.
+        Table `over_speed` of stage shaft_orders: turning, order (of the turns), speed_rpm, force_n.
 
     Returns
     -------
     Figure
-        The figure.
+        Two panels, N.
     """
     above: list[Curve] = []
     below: list[Curve] = []
@@ -430,7 +442,7 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
 
 
 def _over_speed(rows: pd.DataFrame, colour: str, name: str) -> Iterator[Curve]:
-    """Yield the force over speed of the ORDERS_SHOWN orders with the largest forces."""
+    """Yield force (N) over speed (rpm) of the ORDERS_SHOWN orders with the largest forces, lowest first."""
     peaks = rows.groupby("order")["force_n"].max().nlargest(ORDERS_SHOWN)
     for line, order in zip(LINES, np.sort(peaks.index), strict=False):
         order_rows = rows[rows["order"] == order]
