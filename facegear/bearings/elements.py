@@ -109,10 +109,8 @@ class PointContact:
     ----------
     axis_ratio
         Long over short axis of the ellipse.
-    curvature
-        Sum of the curvatures, 1/m.
-    modulus
-        E / (1 - nu^2), Pa.
+    curvature, modulus
+        Sum of the curvatures of both bodies, 1/m, and E / (1 - nu^2), Pa.
     """
 
     axis_ratio: float
@@ -205,6 +203,7 @@ class RollingBearing:
     density: float = STEEL_DENSITY
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no bearing has."""
         if self.elements < 2:
             raise InvalidInput("number of rolling elements", self.elements, "at least 2")
         if self.direction not in (1, -1):
@@ -272,6 +271,7 @@ class BallBearing(RollingBearing):
     groove_ratio_outer: float = 0.52
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no ball bearing has."""
         super().__post_init__()
         for name in ("groove_ratio_inner", "groove_ratio_outer"):
             if not 0.501 <= getattr(self, name) <= 1.0:
@@ -346,10 +346,8 @@ class RollerBearing(RollingBearing):
     ----------
     effective_length
         Length of a roller that carries, m.
-    slices
-        Number of slices n.
-    has_profile
-        Whether rollers have a logarithmic profile; otherwise they are straight.
+    slices, has_profile
+        Number of slices n; whether rollers have a logarithmic profile, otherwise they are straight.
     """
 
     effective_length: float
@@ -357,6 +355,7 @@ class RollerBearing(RollingBearing):
     has_profile: bool = True
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no roller bearing has."""
         super().__post_init__()
         if not 0.0 < self.effective_length < np.inf:
             raise InvalidInput("effective length of a roller", self.effective_length, "above 0 m")
@@ -418,6 +417,7 @@ class RollerBearing(RollingBearing):
         stiffness, drops = self.slice_stiffness * 2.0**LINE_EXPONENT, self.drops
 
         def slice_loads(position: float) -> Array:
+            """Return the load of each slice (n,), N, at an approach (m) of roller and outer ring."""
             return np.asarray(stiffness * np.maximum(position - drops, 0.0) ** LINE_EXPONENT)
 
         furthest = float(drops.max() + (force / (stiffness * self.slices)) ** (1.0 / LINE_EXPONENT))

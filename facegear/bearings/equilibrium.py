@@ -194,7 +194,7 @@ class BearingState:
 
     @property
     def hardest_load(self) -> float:
-        """Largest load of an element on the inner ring, N."""
+        """Largest load of one element on the inner ring, its slices added, N."""
         return float(self.loads.element_inner.max())
 
     @property
@@ -223,7 +223,7 @@ class BearingState:
     @property
     def contact_angles(self) -> tuple[float, float]:
         """Smallest and largest angle of the loaded contacts, rad, positive on the side of the thrust that
-        loads the bearing; both are those of the bearing without load.
+        loads the bearing; both are the nominal contact angle where no element is loaded.
         """
         element_load = self.loads.element_inner[0]
         counts = element_load > LIFTED * element_load.max()

@@ -234,7 +234,7 @@ def edge_factors(slices: int) -> Array:
 
 
 def reference_load(bearing: AnyBearing, life: Array, rating: float | None = None) -> Array:
-    """Return the equivalent reference load P_ref, which gives the reference life by ISO 281.
+    """Return the equivalent reference load P_ref = C / L10r^(1/p), which gives the reference life by ISO 281.
 
     Parameters
     ----------
@@ -274,6 +274,7 @@ class Lubrication:
     reliability: float = 90.0
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for values outside the ranges of the attributes."""
         if not 0.0 < self.contamination_factor <= 1.0:
             raise InvalidInput("contamination factor", self.contamination_factor, "above 0, at most 1")
         if not 0.1 <= self.viscosity_ratio < np.inf:

@@ -190,7 +190,8 @@ def static_safety(bearing: AnyBearing, pressure: Array) -> Array:
 
 
 def largest_gap(bearing: AnyBearing) -> float:
-    """Return the largest length that contacts subtract from another one, whose rounding is that of forces.
+    """Return the largest length of which contacts take a difference: rounding of forces is that of this
+    length.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ class ContactPath:
 
     @property
     def middle(self) -> float:
-        """Mean of both ends, m."""
+        """Mean of both ends s, m."""
         return (self.first + self.last) / 2
 
 

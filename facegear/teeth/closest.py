@@ -197,7 +197,8 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tupl
     """Return the closest points of each pair by a 15 x 15 grid, and the size of its cell (2,): roll
     (rad), y (m).
 
-    Pairs within `margin` (m) and a little more of the smallest gap are followed by FIRST finer grids.
+    Pairs within `margin` (m) and a little more of the smallest gap are followed by finer grids, shrunk
+    _FIRST times.
     """
     low, high = bounds(design)
     face = design.face_gear

@@ -52,7 +52,7 @@ ROUNDING = 16 * np.finfo(float).eps
 
 @dataclass(frozen=True, eq=False)
 class NormalLines:
-    """Lines of contact of shaper and gear, one for each slope, and their derivatives by the slope.
+    """Lines of contact of shaper and gear in the mesh frame, one a slope psi, and their derivatives by psi.
 
     foot, foot_slope: place (..., 3) on the shaper's base cylinder (m) and its derivative (m/rad). normal,
     normal_slope: direction from pinion to gear (..., 3) and its derivative. y, y_slope: place of the foot
@@ -85,7 +85,7 @@ class GearFlank:
         return shaper.side * self.motion.ratio / (shaper.cosine * shaper.base_radius)
 
     def lines(self, psi: ArrayLike) -> NormalLines:
-        """Return the lines of contact of given slopes.
+        """Return the lines in space on which shaper and gear touch with given slopes of the normal.
 
         Parameters
         ----------

@@ -39,9 +39,9 @@ class GearHits:
 class EdgeFeet:
     """Feet, on p pinion teeth, of the pinion normals through n points of the gear's tip edge, all (p, n).
 
-    gap (m), inf where there is none; lever_arm (m) of the normal about the pinion's axis; y (m). Either
-    `flank`, 0..1 in the square of the roll angle from tip to fillet, or `fillet`, the angle gamma (rad)
-    there, is not nan.
+    gap (m), negative inside the pinion, inf where there is none; lever_arm (m) of the normal about the
+    pinion's axis; y (m). Either `flank`, 0..1 in the square of the roll angle from tip to fillet, or
+    `fillet`, the angle gamma (rad) there, is not nan.
     """
 
     gap: Array

@@ -20,7 +20,13 @@ SAMPLES = 25
 
 
 class Blank(NamedTuple):
-    """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`)."""
+    """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`).
+
+    base, ratio, space, lift: see `face_gear.shaper_numbers`; tip_centre, tip_rounding, edge_start: see
+    `face_gear_fillet.tip_numbers`; tip_roll: where the shaper's involute ends (rad); inner, outer: radii
+    of the face (m); tip_plane, root_plane: heights z (m); root_start: gear angle from the tooth's middle
+    at which the root land begins (rad); pitch: angular pitch (rad).
+    """
 
     base: float
     ratio: float

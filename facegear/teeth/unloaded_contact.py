@@ -54,7 +54,7 @@ class UnloadedContact:
 
     @property
     def path(self) -> tuple[Array, Array]:
-        """Roll angle (rad) and y (m) of the touching point, (p,)."""
+        """Roll angle (rad) and y (m), on the pinion, of the touching point of pair `tooth`, (p,)."""
         rows = np.arange(len(self.phi1))
         column = np.searchsorted(PAIRS, self.tooth)
         return self.roll[rows, column], self.y[rows, column]
