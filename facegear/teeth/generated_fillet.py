@@ -377,7 +377,7 @@ class GearFillet:
         return self.generate(y, np.asarray(part, float) * self.last_angle(y))
 
     def _roll(self, y: Array) -> tuple[Array, Array]:
-        """Return the tangent length (m) from the ball's centre to the base cylinder, and its slope by y."""
+        """Return the length of roll (m) of the ball's centre, sqrt(radius^2 - r_b^2), and its slope by y."""
         centre = self.centre_radius + (y - self.shaper.middle) * self.taper
         with np.errstate(invalid="ignore"):
             roll = np.sqrt(centre**2 - self.shaper.base_radius**2)

@@ -215,9 +215,9 @@ class PinionFillet:
         return tangents[0], tangents[1]
 
     def _contact(self, u: ArrayLike, v: ArrayLike) -> tuple[tuple[Array, Array, Array], Array, Array]:
-        """Return three arrays for slopes u and places v: the outward normal's components along (x, a, u)
-        of the rack, the depth (m) of the rounding's axis below the pitch line, and the turn (rad) from
-        there to the body frame.
+        """Return three arrays for slopes u and places v: the components along (x, a, u) of the outward
+        normal, which meets the pitch line; the depth (m) of the rounding's axis below that line; and the
+        turn (rad) from that position of the rack to the body frame.
         """
         side, taper = self.helicoid.side, tan(self.taper)
         cotangent = 1.0 / np.tan(np.asarray(u, float))

@@ -419,7 +419,9 @@ def _depth(plan: SectionPlan, sigma: Array) -> Array:
 
 
 def _straighten(half: HalfSection, values: Array) -> None:
-    """Put mid nodes off the surface halfway between their ends, in place in `values` (nodes, planes)."""
+    """Put mid nodes off the surface halfway between their ends, whatever the outline does; in place in
+    `values` (nodes, planes).
+    """
     quads = half.quads
     for middle, first, last in ((1, 0, 2), (3, 0, 6), (5, 2, 8), (7, 6, 8)):
         edges = quads[half.t[quads[:, middle]] > 0]
