@@ -32,22 +32,22 @@ LARGEST_RATIO = 1e3
 
 
 class BallSprings(NamedTuple):
-    """Fields that `facegear/_kernels/src/bearings/balls.hpp` takes; m, N, N/m^1.5 and J.
+    """Numbers of a ball bearing for `facegear/_kernels/src/bearings/balls.hpp`; m, N, N/m^1.5 and J.
 
     Attributes
     ----------
     cosine, sine : (Z,)
-        Of the angle of each ball.
+        Of the angle psi of each ball, from x towards y.
     arm, height
-        Radius and z of the inner groove's centre.
+        Radius, and z from the plane of the balls, of the centre of curvature of the inner groove.
     rest_radial, rest_axial
-        Vector from the outer to the inner groove's centre at rest.
+        Vector from the outer to the inner groove's centre, the ring at rest.
     inner_length, outer_length
         From a groove's centre to the ball's centre at first touch.
     inner_stiffness, outer_stiffness, stiffness
         Of single contacts, and of both in series.
     centrifugal, free_energy
-        Force on a ball, and its energy on the outer ring alone.
+        Radial force on a ball, and energy, which kernels subtract, of a ball on the outer ring alone.
     """
 
     cosine: Array
@@ -66,26 +66,24 @@ class BallSprings(NamedTuple):
 
 
 class RollerSprings(NamedTuple):
-    """Fields that `facegear/_kernels/src/bearings/rollers.hpp` takes; m, N, N/m^(10/9) and J.
+    """Numbers of a roller bearing for `facegear/_kernels/src/bearings/rollers.hpp`; m, N, N/m^(10/9) and J.
 
     Attributes
     ----------
     cosine, sine : (Z,)
-        Of the angle of each roller.
+        Of the angle psi of each roller, from x towards y.
     positions, drops : (n,)
         Middle of each slice along the roller, and drop of the profile of one contact there.
     radius
         Of the circle of the rollers' middles.
     normal_radial, normal_axial
-        Direction of the load on the inner ring's raceway.
+        Unit vector of the load on rollers by the inner ring: motion along it presses them.
     direction
-        1, or -1 where z is mirrored.
-    clearance
-        Along the normal.
-    stiffness
-        Of a slice, both contacts in series.
+        `RollingBearing.direction`.
+    clearance, stiffness
+        Half of the diametral clearance along the normal; stiffness of a slice, both contacts in series.
     centrifugal, free_position, free_energy
-        Force on a roller along the normal, its position and energy on the outer ring alone.
+        Force on a roller along the normal, and its position and energy (`RollerBearing._free_roller`).
     """
 
     cosine: Array
@@ -111,10 +109,8 @@ class PointContact:
     ----------
     axis_ratio
         Long over short axis of the ellipse.
-    curvature
-        Sum of the curvatures, 1/m.
-    modulus
-        E / (1 - nu^2), Pa.
+    curvature, modulus
+        Sum of the curvatures of both bodies, 1/m, and E / (1 - nu^2), Pa.
     """
 
     axis_ratio: float
@@ -123,20 +119,20 @@ class PointContact:
 
     @property
     def integrals(self) -> tuple[float, float]:
-        """Complete elliptic integrals of the first and second kind."""
+        """Complete elliptic integrals K and E of the modulus k with k^2 = 1 - 1 / axis_ratio^2."""
         parameter = 1.0 - 1.0 / self.axis_ratio**2
         return float(ellipk(parameter)), float(ellipe(parameter))
 
     @property
     def stiffness(self) -> float:
-        """Load over approach^1.5, N/m^1.5."""
+        """Load of this one contact over (approach of ball and ring)^1.5, by Hertz, N/m^1.5."""
         first, second = self.integrals
         length = first * (self.curvature / (self.axis_ratio**2 * second)) ** (1.0 / 3.0)
         return float(np.pi / np.sqrt(4.5) * self.modulus * length**-1.5)
 
 
 def touch_groove(ball: float, groove: float, pitch_ratio: float, modulus: float) -> PointContact:
-    """Make the contact of a ball with a groove.
+    """Solve Hertz's equation for the axis ratio of a ball's contact with a groove (ISO/TS 16281).
 
     Parameters
     ----------
@@ -145,21 +141,22 @@ def touch_groove(ball: float, groove: float, pitch_ratio: float, modulus: float)
     groove : float
         Radius of the groove over the diameter of the ball, dimensionless.
     pitch_ratio : float
-        gamma / (1 - gamma) at the inner ring, -gamma / (1 + gamma) at the outer one, gamma being the diameter
-        of the ball times the cosine of the contact angle over the pitch diameter; dimensionless.
+        gamma / (1 - gamma) at the inner ring, -gamma / (1 + gamma) at the outer one, with gamma as in
+        `RollingBearing.pitch_ratio`; dimensionless.
     modulus : float
         E / (1 - nu^2), Pa.
 
     Returns
     -------
     PointContact
-        The contact.
+        Its axis ratio, sum of curvatures and modulus.
     """
     conformity = 0.5 / groove
     total = 2.0 + pitch_ratio - conformity
     difference = (pitch_ratio + conformity) / total
 
     def excess(ratio: float) -> float:
+        """Return F(rho) of an ellipse with this axis ratio less the given one, dimensionless."""
         parameter = 1.0 - 1.0 / ratio**2
         integrals = ellipk(parameter) / ellipe(parameter)
         return float(1.0 - 2.0 * (integrals - 1.0) / (ratio**2 - 1.0) - difference)
@@ -206,6 +203,7 @@ class RollingBearing:
     density: float = STEEL_DENSITY
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no bearing has."""
         if self.elements < 2:
             raise InvalidInput("number of rolling elements", self.elements, "at least 2")
         if self.direction not in (1, -1):
@@ -236,11 +234,11 @@ class RollingBearing:
 
     @property
     def modulus(self) -> float:
-        """E / (1 - nu^2), Pa."""
+        """E / (1 - nu^2) of rings and elements, Pa."""
         return self.young / (1.0 - self.poisson**2)
 
     def centrifugal_force(self, volume: float) -> float:
-        """Return the radial force on an element that rolls on an outer ring at rest.
+        """Return the outward centrifugal force on an element, m r w^2 at the speed w of a cage that rolls.
 
         Parameters
         ----------
@@ -250,7 +248,7 @@ class RollingBearing:
         Returns
         -------
         float
-            N.
+            N, at least 0; 0 where `speed` is 0.
         """
         cage_speed = 0.5 * self.speed * (1.0 - self.pitch_ratio)
         return self.density * volume * 0.5 * self.pitch_diameter * cage_speed**2
@@ -273,6 +271,7 @@ class BallBearing(RollingBearing):
     groove_ratio_outer: float = 0.52
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no ball bearing has."""
         super().__post_init__()
         for name in ("groove_ratio_inner", "groove_ratio_outer"):
             if not 0.501 <= getattr(self, name) <= 1.0:
@@ -289,7 +288,7 @@ class BallBearing(RollingBearing):
 
     @cached_property
     def contacts(self) -> tuple[PointContact, PointContact]:
-        """Contacts of a ball with inner and outer ring."""
+        """Hertzian contacts of a ball with inner and outer groove, in this order, without load."""
         gamma, ball = self.pitch_ratio, self.element_diameter
         return (
             touch_groove(ball, self.groove_ratio_inner, gamma / (1.0 - gamma), self.modulus),
@@ -298,7 +297,7 @@ class BallBearing(RollingBearing):
 
     @cached_property
     def springs(self) -> BallSprings:
-        """Fields for the kernels."""
+        """Numbers that the kernels in `facegear._kernels.bearings` take for this bearing."""
         ball, (inner, outer) = self.element_diameter, self.contacts
         cosine, sine = np.cos(self.contact_angle), self.direction * np.sin(self.contact_angle)
         inner_length = (self.groove_ratio_inner - 0.5) * ball
@@ -322,12 +321,12 @@ class BallBearing(RollingBearing):
         )
 
     def stiffness_at(self, load: float) -> float:
-        """Return the tangent stiffness of one ball, by which motions of the ring are scaled.
+        """Return d load / d approach of one ball, contacts in series, by which motions are scaled.
 
         Parameters
         ----------
         load : float
-            N.
+            Load of the ball, N; no centrifugal force is counted.
 
         Returns
         -------
@@ -347,10 +346,8 @@ class RollerBearing(RollingBearing):
     ----------
     effective_length
         Length of a roller that carries, m.
-    slices
-        Number of slices n.
-    has_profile
-        Whether rollers have a logarithmic profile; otherwise they are straight.
+    slices, has_profile
+        Number of slices n; whether rollers have a logarithmic profile, otherwise they are straight.
     """
 
     effective_length: float
@@ -358,6 +355,7 @@ class RollerBearing(RollingBearing):
     has_profile: bool = True
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for dimensions that no roller bearing has."""
         super().__post_init__()
         if not 0.0 < self.effective_length < np.inf:
             raise InvalidInput("effective length of a roller", self.effective_length, "above 0 m")
@@ -371,7 +369,7 @@ class RollerBearing(RollingBearing):
 
     @property
     def drops(self) -> Array:
-        """Drop of the profile of one contact at each slice, (n,), m."""
+        """Depth of the logarithmic profile below a cylinder at each slice, (n,), m; 0 without profile."""
         if not self.has_profile:
             return np.zeros(self.slices)
         diameter, length = self.element_diameter, self.effective_length
@@ -386,12 +384,12 @@ class RollerBearing(RollingBearing):
 
     @property
     def slice_stiffness(self) -> float:
-        """Stiffness of a slice, both contacts in series, N/m^(10/9)."""
+        """Load of a slice over (approach of the rings)^(10/9), both contacts in series, N/m^(10/9)."""
         return SLICE_STIFFNESS * self.effective_length ** (8.0 / 9.0) / self.slices
 
     @cached_property
     def springs(self) -> RollerSprings:
-        """Fields for the kernels."""
+        """Numbers that the kernels in `facegear._kernels.bearings` take for this bearing."""
         cosine, sine = np.cos(self.contact_angle), self.direction * np.sin(self.contact_angle)
         volume = 0.25 * np.pi * self.element_diameter**2 * self.effective_length
         force = float(self.centrifugal_force(volume) * cosine)
@@ -413,12 +411,13 @@ class RollerBearing(RollingBearing):
         )
 
     def _free_roller(self, force: float) -> tuple[float, float]:
-        """Return position (m) and energy (J) of a roller that a force (N) holds on the outer ring alone."""
+        """Return approach to the outer ring (m) and energy (J) of a roller that a force (N) alone presses."""
         if force == 0.0:
             return 0.0, 0.0
         stiffness, drops = self.slice_stiffness * 2.0**LINE_EXPONENT, self.drops
 
         def slice_loads(position: float) -> Array:
+            """Return the load of each slice (n,), N, at an approach (m) of roller and outer ring."""
             return np.asarray(stiffness * np.maximum(position - drops, 0.0) ** LINE_EXPONENT)
 
         furthest = float(drops.max() + (force / (stiffness * self.slices)) ** (1.0 / LINE_EXPONENT))
@@ -430,12 +429,12 @@ class RollerBearing(RollingBearing):
         return position, energy - force * position
 
     def stiffness_at(self, load: float) -> float:
-        """Return the tangent stiffness of one roller without profile, by which motions are scaled.
+        """Return d load / d approach of a straight roller, contacts in series, by which motions are scaled.
 
         Parameters
         ----------
         load : float
-            N.
+            Load of the roller, N.
 
         Returns
         -------

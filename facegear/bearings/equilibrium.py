@@ -49,14 +49,14 @@ LIFTED = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Curvature:
-    """Energy at a motion, with its first and second derivatives.
+    """Energy of bearings (and of a bent shaft) at a motion, with its first and second derivatives.
 
     Attributes
     ----------
     energy
-        J.
+        J, without the work of the load.
     gradient : (n,)
-        N and N m.
+        Loads that hold the motion, N and N m.
     matrix : (n, n)
         N/m, N/rad and N m/rad.
     size, rounding
@@ -79,22 +79,25 @@ def minimise(
     tie: float,
     reach: float,
 ) -> Array:
-    """Minimise a convex energy less the work of a load.
+    """Find the motion at which a convex energy less the work of a load is least, by Newton's method.
+
+    A spring to ground is added to the matrix of each step alone and fades, so that it does not move the
+    result.
 
     Parameters
     ----------
     derivatives : callable
-        Derivatives of the energy at a motion (n,).
+        Takes a motion (n,), m and rad, and returns the energy's derivatives there as a `Curvature`.
     start : (n,) array
         Motion at which the search begins, m and rad.
     load : (n,) array
-        N and N m.
+        Constant load along each motion, N and N m.
     scale : (n,) array
-        Arm of each motion, m for rotations and 1 for shifts, by which they are compared.
+        Arm of each motion, m for rotations and 1 for shifts, with which motions and loads become m and N.
     tie : float
         Stiffness that the load would meet in one element, N/m.
     reach : float
-        Motion, m, beyond which nothing holds the load.
+        Largest motion, in scaled m, that is searched; a load that still drives beyond it is not held.
 
     Returns
     -------
@@ -132,7 +135,12 @@ def _search_line(
     start: float,
     reach: Array,
 ) -> tuple[Array, Curvature]:
-    """Return the motion along a step at which the energy is least, and its derivatives there."""
+    """Return the motion (n,) along a step at which energy less work of the load is least, and the curvature
+    there.
+
+    `start` is the derivative at the beginning of the step, J, of which CLOSE may remain; `reach` (n,) bounds
+    each motion, m and rad. Steps along the line are Newton's, or halve the bracket where these leave it.
+    """
     moves = step != 0.0
     with np.errstate(over="ignore"):
         fractions = np.where(step > 0.0, reach - motion, reach + motion)[moves] / np.abs(step[moves])
@@ -160,7 +168,7 @@ def _search_line(
 
 @dataclass(frozen=True, eq=False)
 class BearingState:
-    """A bearing at a motion of its inner ring.
+    """A bearing at a motion of its inner ring against the outer one.
 
     Attributes
     ----------
@@ -169,9 +177,9 @@ class BearingState:
     motion : (5,)
         x, y, z (m), tilt_x, tilt_y (rad).
     force : (5,)
-        Load that the bearing carries there, N and N m.
+        Load of the shaft on the inner ring that holds it there, N and N m.
     stiffness : (5, 5)
-        Tangent, N/m, N/rad and N m/rad.
+        Derivative of `force` by `motion`, N/m, N/rad and N m/rad.
     """
 
     bearing: AnyBearing
@@ -181,12 +189,12 @@ class BearingState:
 
     @cached_property
     def loads(self) -> ElementLoads:
-        """Loads of the elements at this one motion."""
+        """Loads and contact angles of all elements at this motion, with K = 1 in all shapes."""
         return element_loads(self.bearing, self.motion[None])
 
     @property
     def hardest_load(self) -> float:
-        """Largest load of an element on the inner ring, N."""
+        """Largest load of one element on the inner ring, its slices added, N."""
         return float(self.loads.element_inner.max())
 
     @property
@@ -196,23 +204,26 @@ class BearingState:
 
     @property
     def zone(self) -> float:
-        """Angle over which elements are loaded, rad."""
+        """Angle of the circumference within which an element would be loaded, rad (`load_zone`)."""
         return load_zone(self.bearing, self.motion)
 
     @property
     def pressures(self) -> Array:
-        """Largest pressure at inner and outer ring, (2,), Pa."""
+        """Largest Hertzian pressure of any element (slice) at inner and outer ring, (2,), Pa."""
         return largest_pressures(self.bearing, self.loads)[0]
 
     @property
     def static_safety(self) -> float:
-        """Factor of the loads to the largest pressure of ISO 76, dimensionless; infinite without load."""
+        """Factor by which all loads may grow up to the pressure limit of ISO 76, the smaller one of both
+        rings,
+        dimensionless; infinite without load.
+        """
         return float(static_safety(self.bearing, self.pressures).min())
 
     @property
     def contact_angles(self) -> tuple[float, float]:
         """Smallest and largest angle of the loaded contacts, rad, positive on the side of the thrust that
-        loads the bearing; both are those of the bearing without load.
+        loads the bearing; both are the nominal contact angle where no element is loaded.
         """
         element_load = self.loads.element_inner[0]
         counts = element_load > LIFTED * element_load.max()
@@ -230,14 +241,15 @@ class BearingState:
 
 
 def state_at(bearing: AnyBearing, motion: Array) -> BearingState:
-    """Return the state of a bearing at a motion of its inner ring.
+    """Return force and tangent stiffness of a bearing at a given motion of its inner ring; nothing is
+    searched.
 
     Parameters
     ----------
     bearing : BallBearing or RollerBearing
         The bearing.
     motion : (5,) array
-        m and rad.
+        x, y, z (m), tilt_x, tilt_y (rad) of the inner ring against the outer one.
 
     Returns
     -------
@@ -249,19 +261,21 @@ def state_at(bearing: AnyBearing, motion: Array) -> BearingState:
 
 
 def bearing_curve(bearing: AnyBearing, motion: Array) -> Curvature:
-    """Return the energy of a bearing and its derivatives at a motion of the inner ring.
+    """Return the energy of a bearing and its derivatives at a motion of the inner ring, as `minimise` needs
+    them.
 
     Parameters
     ----------
     bearing : BallBearing or RollerBearing
         The bearing.
     motion : (5,) array
-        m and rad.
+        x, y, z (m), tilt_x, tilt_y (rad).
 
     Returns
     -------
     Curvature
-        J, N, N m, N/m, N/rad and N m/rad.
+        Energy (J), gradient (N and N m), matrix (N/m, N/rad and N m/rad), and the rounding (N) that
+        lengths leave in the forces.
     """
     response, scale = respond(bearing, motion[None]), _scale(bearing.pitch_diameter)
     force, stiffness = response.force[0], response.stiffness[0]
@@ -293,7 +307,7 @@ def find_equilibrium(bearing: AnyBearing, load: Array, start: Array | None = Non
     Returns
     -------
     BearingState
-        Equilibrium.
+        The bearing where its `force` is the load to TOLERANCE.
 
     Raises
     ------
@@ -310,6 +324,7 @@ def find_equilibrium(bearing: AnyBearing, load: Array, start: Array | None = Non
         raise InvalidInput("thrust of a cylindrical roller bearing", float(load[2]), requirement)
 
     def derivatives(motion: Array) -> Curvature:
+        """Return the energy of the bearing and its derivatives at a motion (5,), m and rad."""
         return bearing_curve(bearing, motion)
 
     begin = np.zeros(MOTIONS) if start is None else start
@@ -323,4 +338,7 @@ def find_equilibrium(bearing: AnyBearing, load: Array, start: Array | None = Non
 
 
 def _scale(pitch_diameter: float) -> Array:
+    """Return the arms (5,) by which x, y, z, tilt_x and tilt_y compare: 1 thrice, and half the pitch
+    diameter (m).
+    """
     return np.array([1.0, 1.0, 1.0, 0.5 * pitch_diameter, 0.5 * pitch_diameter])

@@ -75,7 +75,7 @@ def load_rating(bearing: AnyBearing) -> float:
     Returns
     -------
     float
-        N.
+        C, N, computed from the dimensions (ISO 281, contemporary steel); a catalogue's may differ.
     """
     gamma, diameter = bearing.pitch_ratio, 1e3 * bearing.element_diameter
     cosine, count = float(np.cos(bearing.contact_angle)), bearing.elements
@@ -95,11 +95,13 @@ def load_rating(bearing: AnyBearing) -> float:
 
 
 def _groove_term(bearing: BallBearing) -> float:
+    """Return r_i (2 r_e - D) / (r_e (2 r_i - D)) of the groove radii and the ball diameter, dimensionless."""
     inner, outer = bearing.groove_ratio_inner, bearing.groove_ratio_outer
     return inner * (2.0 * outer - 1.0) / (outer * (2.0 * inner - 1.0))
 
 
 def _life_exponent(bearing: AnyBearing) -> float:
+    """Return the exponent p of the load in L = (C / P)^p: 3 of balls, 10/3 of rollers (ISO 281)."""
     return 3.0 if isinstance(bearing, BallBearing) else 10.0 / 3.0
 
 
@@ -111,12 +113,12 @@ def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
     bearing : BallBearing or RollerBearing
         The bearing.
     force : (..., 5) array
-        Loads of the bearing, N and N m.
+        Loads along x, y, z (N) and about x, y (N m); signs and moments do not count.
 
     Returns
     -------
     (...) array
-        N; not a number for ball bearings with contact angles below 20 or above 45 degrees, where thrust acts.
+        N; not a number under thrust for angular contact ball bearings below 20 or above 45 degrees.
     """
     radial, thrust = np.hypot(force[..., 0], force[..., 1]), np.abs(force[..., 2])
     limit, radial_factor, thrust_factor = _load_factors(bearing, thrust)
@@ -125,7 +127,7 @@ def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
 
 
 def _load_factors(bearing: AnyBearing, thrust: Array) -> tuple[Array | float, Array | float, Array | float]:
-    """Return e, X and Y, dimensionless."""
+    """Return e, X and Y at a thrust (...), N: P = X F_r + Y F_a where F_a > e F_r, else P = F_r."""
     degrees = float(np.degrees(bearing.contact_angle))
     if isinstance(bearing, RollerBearing):
         if not bearing.contact_angle:
@@ -144,7 +146,7 @@ def _load_factors(bearing: AnyBearing, thrust: Array) -> tuple[Array | float, Ar
 
 
 def basic_life(bearing: AnyBearing, load: Array, rating: float | None = None) -> Array:
-    """Return the basic life L10 of ISO 281.
+    """Return the basic life L10 = (C / P)^p of ISO 281.
 
     Parameters
     ----------
@@ -175,11 +177,11 @@ def reference_life(
     bearing : BallBearing or RollerBearing
         The bearing.
     loads : ElementLoads
-        Loads of the elements at K motions.
+        Loads of the elements (slices) at K motions.
     rating : float, optional
         Load rating C, N; that of `load_rating` by default.
     outer_turns : bool
-        Whether the outer ring turns against the load and the inner one does not.
+        If True, the outer ring turns against the load, and the inner one stands; else the reverse.
 
     Returns
     -------
@@ -213,7 +215,7 @@ def reference_life(
 
 
 def edge_factors(slices: int) -> Array:
-    """Return the factors f_k by which pressure at the edges of rollers exceeds that of their slices.
+    """Return the factors f_k of ISO/TS 16281 for edge stress, by which loads of slices are multiplied.
 
     Parameters
     ----------
@@ -232,7 +234,7 @@ def edge_factors(slices: int) -> Array:
 
 
 def reference_load(bearing: AnyBearing, life: Array, rating: float | None = None) -> Array:
-    """Return the equivalent reference load P_ref, which gives the reference life by ISO 281.
+    """Return the equivalent reference load P_ref = C / L10r^(1/p), which gives the reference life by ISO 281.
 
     Parameters
     ----------
@@ -262,10 +264,8 @@ class Lubrication:
         e_C, from above 0 (dirty) to 1 (clean).
     viscosity_ratio
         kappa, viscosity over the one that the speed asks for; at least 0.1.
-    fatigue_load_limit
-        C_u of the bearing, N.
-    reliability
-        Percent, a key of `RELIABILITY`.
+    fatigue_load_limit, reliability
+        C_u of the bearing, N, and the reliability of the life in percent, a key of `RELIABILITY`.
     """
 
     contamination_factor: float
@@ -274,6 +274,7 @@ class Lubrication:
     reliability: float = 90.0
 
     def __post_init__(self) -> None:
+        """Raise InvalidInput for values outside the ranges of the attributes."""
         if not 0.0 < self.contamination_factor <= 1.0:
             raise InvalidInput("contamination factor", self.contamination_factor, "above 0, at most 1")
         if not 0.1 <= self.viscosity_ratio < np.inf:
@@ -300,7 +301,7 @@ def life_factor(bearing: AnyBearing, load: Array, lubrication: Lubrication) -> A
     Returns
     -------
     (...) array
-        Factor, dimensionless.
+        Factor on the life, dimensionless, a_ISO being at most LARGEST_FACTOR.
     """
     ratio = min(lubrication.viscosity_ratio, 4.0)
     if isinstance(bearing, BallBearing):
@@ -364,7 +365,7 @@ def rate_duty(
     bearing : BallBearing or RollerBearing
         The bearing.
     force : (B, 5) array
-        Loads of the bearing in each bin, N and N m.
+        Loads of the bearing in each bin, N and N m, as in `equivalent_load`.
     loads : ElementLoads
         Loads of its elements in each bin.
     turns_per_hour : (B,) array
@@ -374,12 +375,12 @@ def rate_duty(
     rating : float, optional
         Load rating C of a catalogue, N; that of `load_rating` by default.
     lubrication : Lubrication, optional
-        Conditions of the modified life.
+        Conditions of the modified life; without it this life is not a number.
 
     Returns
     -------
     DutyLife
-        Million turns and h.
+        Lives of each bin in million turns, of the whole cycle in h.
     """
     capacity = load_rating(bearing) if rating is None else rating
     equivalent = equivalent_load(bearing, force)
@@ -418,7 +419,7 @@ def sum_damage(life: Array, turns_per_hour: Array, hours: Array) -> float:
 
 
 def life_together(bearings: Sequence[AnyBearing], lives: Sequence[float]) -> float:
-    """Return the life that as many sets of bearings reach as single bearings reach theirs.
+    """Return the life that a set of bearings survives with the probability that its single lives have.
 
     Parameters
     ----------
@@ -442,6 +443,7 @@ def life_together(bearings: Sequence[AnyBearing], lives: Sequence[float]) -> flo
     shortest = min(life for life, _ in finite)
 
     def excess(logarithm: float) -> float:
+        """Return the sum of (L / L_i)^e_i less 1 at the logarithm of L over the shortest life."""
         together = shortest * np.exp(logarithm)
         return float(sum((together / life) ** slope for life, slope in finite)) - 1.0
 

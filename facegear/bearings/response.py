@@ -48,7 +48,8 @@ class ElementLoads:
     inner, outer : (K, Z, n)
         Loads of each element on inner and outer ring, in n slices (1 for balls), N.
     inner_angle, outer_angle : (K, Z)
-        Angle of both contacts, rad, with the sign of the thrust.
+        Angle of the normal of both contacts from the radial direction, rad, positive where the inner ring
+        presses towards +z.
     """
 
     inner: Array
@@ -68,19 +69,19 @@ class ElementLoads:
 
 
 def respond(bearing: AnyBearing, motion: AnyArray) -> RingResponse:
-    """Compute energy, force and stiffness at many motions of the inner ring.
+    """Compute energy, force and stiffness at many motions of the inner ring, all elements added.
 
     Parameters
     ----------
     bearing : BallBearing or RollerBearing
         The bearing.
     motion : (K, 5) array
-        x, y, z (m), tilt_x, tilt_y (rad).
+        x, y, z (m), tilt_x, tilt_y (rad) of the inner ring against the outer one.
 
     Returns
     -------
     RingResponse
-        SI units.
+        Energies (K,), forces (K, 5) and tangents (K, 5, 5) in SI units.
 
     Raises
     ------
@@ -103,12 +104,12 @@ def element_loads(bearing: AnyBearing, motion: AnyArray) -> ElementLoads:
     bearing : BallBearing or RollerBearing
         The bearing.
     motion : (K, 5) array
-        x, y, z (m), tilt_x, tilt_y (rad).
+        x, y, z (m), tilt_x, tilt_y (rad) of the inner ring against the outer one.
 
     Returns
     -------
     ElementLoads
-        N and rad.
+        Loads (K, Z, n), N, and contact angles (K, Z), rad.
 
     Raises
     ------
@@ -128,13 +129,14 @@ def element_loads(bearing: AnyBearing, motion: AnyArray) -> ElementLoads:
 
 
 def _require_positions(missing_positions: int) -> None:
+    """Raise NotConverged if a kernel could not find the position of some elements, whose number is given."""
     if missing_positions:
         elements_text = f"{missing_positions} of them"
         raise NotConverged("position of rolling elements", elements_text, "Newton's method")
 
 
 def largest_pressures(bearing: AnyBearing, loads: ElementLoads) -> Array:
-    """Return the largest pressure at inner and outer ring.
+    """Return the largest Hertzian pressure at inner and outer ring, of point contacts or of slices.
 
     Parameters
     ----------
@@ -146,7 +148,7 @@ def largest_pressures(bearing: AnyBearing, loads: ElementLoads) -> Array:
     Returns
     -------
     (K, 2) array
-        Pa.
+        Largest over elements and slices at inner (0) and outer ring (1), Pa.
     """
     inner, outer = loads.inner.max(axis=(1, 2)), loads.outer.max(axis=(1, 2))
     both_loads = np.stack([inner, outer], axis=-1)
@@ -175,7 +177,7 @@ def static_safety(bearing: AnyBearing, pressure: Array) -> Array:
     bearing : BallBearing or RollerBearing
         The bearing.
     pressure : (...) array
-        Largest pressure, Pa.
+        Largest pressure, Pa. Loads grow with its cube for balls, with its square for rollers.
 
     Returns
     -------
@@ -188,7 +190,8 @@ def static_safety(bearing: AnyBearing, pressure: Array) -> Array:
 
 
 def largest_gap(bearing: AnyBearing) -> float:
-    """Return the largest length that contacts subtract from another one, whose rounding is that of forces.
+    """Return the largest length of which contacts take a difference: rounding of forces is that of this
+    length.
 
     Parameters
     ----------
@@ -218,7 +221,7 @@ def load_zone(bearing: AnyBearing, motion: Array) -> float:
     Returns
     -------
     float
-        rad, from 0 to 2 pi.
+        Sum of all such angles, rad, from 0 to 2 pi.
     """
     angles = 2.0 * np.pi * np.arange(ZONE_SAMPLES) / ZONE_SAMPLES
     least = JUST_TOUCHING * largest_gap(bearing)
@@ -237,7 +240,11 @@ def load_zone(bearing: AnyBearing, motion: Array) -> float:
 
 
 def _approach(bearing: AnyBearing, motion: Array, angles: Array) -> Array:
-    """Return how far an element at each angle is pressed in (m), negative where it is free."""
+    """Return how far an element at each angle (n,), rad, is pressed in (n,), m, negative where it is free.
+
+    It is the approach of both rings, or of the inner ring alone to an element that centrifugal force holds on
+    the outer one; of rollers the largest over the slices.
+    """
     x, y, z, tilt_x, tilt_y = motion
     cosine, sine = np.cos(angles), np.sin(angles)
     turn = tilt_x * sine - tilt_y * cosine

@@ -26,7 +26,7 @@ class Support:
     position
         From the beginning of the shaft, m.
     bearing
-        A rolling bearing, or a stiffness (5, 5), N/m, N/rad and N m/rad.
+        A rolling bearing, or the stiffness (5, 5) of a linear one, N/m, N/rad and N m/rad.
     offset : (5,)
         Motion of the inner ring against the outer one where neither shaft nor seat moves, m and rad: preload.
     """
@@ -36,17 +36,18 @@ class Support:
     offset: Array
 
     def derivatives(self, motion: Array) -> Curvature:
-        """Return load and stiffness at a motion of the inner ring.
+        """Return energy, load and stiffness of the bearing at a motion of its inner ring, in which
+        `offset` is.
 
         Parameters
         ----------
         motion : (5,) array
-            m and rad.
+            x, y, z (m), tilt_x, tilt_y (rad) of the inner ring against the outer one.
 
         Returns
         -------
         Curvature
-            Of the bearing's energy, N, N m, N/m, N/rad and N m/rad.
+            Energy (J), loads on the inner ring (N and N m) and tangent (N/m, N/rad and N m/rad).
         """
         if not isinstance(self.bearing, np.ndarray):
             return bearing_curve(self.bearing, motion)
@@ -59,7 +60,7 @@ class Support:
 
 @dataclass(frozen=True, eq=False)
 class ShaftState:
-    """Equilibrium of a shaft on bearings.
+    """Balance of a shaft and its bearings at a motion of pinion and seats.
 
     Attributes
     ----------
@@ -68,15 +69,15 @@ class ShaftState:
     pinion : (5,)
         Motion of the pinion's middle, m and rad.
     bend : (m,)
-        Coordinates of the bent shaft, whose energy is half of their squares, J^0.5.
+        Coordinates y of the bent shaft, whose energy is half the sum of their squares, J^0.5.
     rings : (bearings, 5)
         Motions of the inner rings against the outer ones, m and rad.
     forces : (bearings, 5)
         Loads of the shaft on its bearings, N and N m.
     pinion_load : (5,)
-        Load of the pinion on the shaft that they balance, N and N m.
+        Load on the middle of the pinion that `forces` balance, N and N m.
     stiffness : (5 (1 + bearings), 5 (1 + bearings))
-        Tangent of the loads on pinion and seats by their motions, the bent shaft eliminated.
+        Derivative of `loads` by the motions of pinion and seats, in this order, the bent shaft eliminated.
     """
 
     energy: float
@@ -89,22 +90,27 @@ class ShaftState:
 
     @property
     def loads(self) -> Array:
-        """Loads on pinion and seats that hold them, (1 + bearings, 5), N and N m: the energy's gradient."""
+        """Outer loads that hold pinion (row 0) and seats, (1 + bearings, 5), N and N m: the energy's
+        gradient.
+        """
         return np.asarray(np.concatenate([self.pinion_load[None], -self.forces]))
 
     @property
     def compliance(self) -> Array:
-        """Motions of the pinion by its loads with the seats at rest, (5, 5)."""
+        """Derivative of the pinion's motion by its load with the seats at rest, (5, 5): m/N, rad/N and
+        rad/(N m).
+        """
         return np.asarray(np.linalg.inv(self.stiffness[:MOTIONS, :MOTIONS]))
 
 
 @dataclass(frozen=True, eq=False)
 class RollingShaft:
-    """Timoshenko shaft on bearings of any kind, as `facegear.parts.shafts.Shaft` has it on springs.
+    """Timoshenko shaft on bearings of any kind, as `facegear.parts.shafts.Shaft` has it on springs; `pinion`
+    is the place of the pinion's middle along it, m.
 
-    Seen from the pinion's middle the shaft bends by C = B B^T for loads on its bearings, so the rings move by
-    T q + B y with the energy y^T y / 2: no stiffness of the shaft is inverted, and bearings may be beside
-    each other.
+    Seen from the pinion's middle the shaft bends by C = B B^T for loads on its bearings, so the rings
+    move by T q + B y for a motion q of the pinion, T being `rigid`, with the energy y^T y / 2: no
+    stiffness of the shaft is inverted, and bearings may be beside each other.
     """
 
     segments: tuple[Segment, ...]
@@ -114,12 +120,17 @@ class RollingShaft:
 
     @cached_property
     def rigid(self) -> Array:
-        """Motions of the rings by those of the pinion on a rigid shaft, (5 bearings, 5)."""
+        """T: motions of the inner rings by those of the pinion's middle on a rigid shaft, (5 bearings, 5)."""
         return np.concatenate([carry_motion(support.position - self.pinion) for support in self.supports])
 
     @cached_property
     def bending(self) -> Array:
-        """B: motions of the rings by the coordinates of the bent shaft, (5 bearings, m)."""
+        """B: motions of the rings by the m coordinates of the bent shaft, (5 bearings, m), m/J^0.5 and
+        rad/J^0.5.
+
+        Columns are eigenvectors of the compliance C of the rings, seen from the pinion, times the roots
+        of their eigenvalues; eigenvalues below RANGE of the largest are left out.
+        """
         at = np.array([self.pinion, *(support.position for support in self.supports)])
         blocks = clamped_compliance(self.segments, self.material, at)
         size = MOTIONS * at.size
@@ -133,7 +144,9 @@ class RollingShaft:
 
     @property
     def arms(self) -> Array:
-        """Length by which motions of the rings are compared, 1 for shifts, (5 bearings,), m."""
+        """Arms by which motions of the rings are compared, (5 bearings,): 1 for shifts, the shaft's length
+        (m) for tilts.
+        """
         length = sum(segment.length for segment in self.segments)
         return np.tile([1.0, 1.0, 1.0, length, length], len(self.supports))
 
@@ -143,7 +156,7 @@ class RollingShaft:
         return np.asarray(np.abs(self.bending * self.arms[:, None]).max(axis=0, initial=0.0))
 
     def search_limits(self, size: float) -> tuple[float, float]:
-        """Return limits of a search for the balance under a load.
+        """Return `tie` and `reach` of `minimise` for the balance under a load.
 
         Parameters
         ----------
@@ -153,7 +166,8 @@ class RollingShaft:
         Returns
         -------
         float, float
-            Stiffness that the load would meet in one element, N/m, and motion, m, that nothing holds.
+            Largest stiffness that the load would meet in one element of a rolling bearing, N/m (1 without
+            any), and the motion, m, beyond which nothing holds the load (infinite without any).
         """
         bearings = [support.bearing for support in self.supports]
         rolling = [bearing for bearing in bearings if not isinstance(bearing, np.ndarray)]
@@ -161,19 +175,19 @@ class RollingShaft:
         return tie, ESCAPE * max((bearing.element_diameter for bearing in rolling), default=np.inf)
 
     def assemble(self, coordinates: Array, seats: Array) -> tuple[Array, list[Curvature]]:
-        """Return the motions of the rings and the answers of their bearings.
+        """Return the motions of the inner rings against the outer ones and what each bearing answers.
 
         Parameters
         ----------
         coordinates : (5 + m,) array
-            Motion of the pinion and coordinates of the bent shaft.
+            Motion of the pinion (5, m and rad), then coordinates of the bent shaft (m, J^0.5).
         seats : (bearings, 5) array
             Motions of the seats of the outer rings, m and rad.
 
         Returns
         -------
         (bearings, 5) array, list of Curvature
-            m and rad, N and N m.
+            Motions with the supports' offsets, m and rad, and energy, loads and tangent of each bearing.
         """
         shaft_motions = self.rigid @ coordinates[:MOTIONS] + self.bending @ coordinates[MOTIONS:]
         rings = shaft_motions.reshape(-1, MOTIONS) - seats
@@ -183,7 +197,7 @@ class RollingShaft:
 
 
 def find_shaft_equilibrium(shaft: RollingShaft, load: Array, seats: Array | None = None) -> ShaftState:
-    """Find the equilibrium of a shaft on its bearings.
+    """Find the equilibrium of a shaft on its bearings under a load on its pinion, by `minimise`.
 
     Parameters
     ----------
@@ -192,7 +206,7 @@ def find_shaft_equilibrium(shaft: RollingShaft, load: Array, seats: Array | None
     load : (5,) array
         Forces (N) and moments (N m) on the middle of the pinion.
     seats : (bearings, 5) array, optional
-        Motions of the seats, m and rad; 0 by default.
+        Given motions of the seats of the outer rings, m and rad; 0 by default.
 
     Returns
     -------
@@ -211,6 +225,7 @@ def find_shaft_equilibrium(shaft: RollingShaft, load: Array, seats: Array | None
     rows = np.concatenate([shaft.rigid, shaft.bending], axis=1)
 
     def derivatives(coordinates: Array) -> Curvature:
+        """Return the energy and its derivatives by pinion motion and bend coordinates (5 + m,)."""
         return _curve(shaft, coordinates, given_seats, rows)
 
     outer = np.concatenate([load, np.zeros(shaft.bend_arms.size)])
@@ -218,7 +233,7 @@ def find_shaft_equilibrium(shaft: RollingShaft, load: Array, seats: Array | None
 
 
 def follow_pinion(shaft: RollingShaft, pinion: Array, seats: Array, bend: Array | None = None) -> ShaftState:
-    """Find how a shaft bends where its pinion and its seats are held.
+    """Find how a shaft bends, and how it loads its bearings, where motions of pinion and seats are given.
 
     The energy that remains is convex in the motions of pinion and seats. `ShaftState.loads` is its gradient,
     `ShaftState.stiffness` its second derivative: one element for the statics of a machine.
@@ -242,6 +257,7 @@ def follow_pinion(shaft: RollingShaft, pinion: Array, seats: Array, bend: Array 
     begin = np.zeros(shaft.bend_arms.size) if bend is None else bend
 
     def derivatives(coordinates: Array) -> Curvature:
+        """Return the energy and its derivatives by the bend coordinates (m,), the pinion at rest."""
         return _curve(shaft, np.concatenate([pinion, coordinates]), seats, shaft.bending)
 
     tie, _ = shaft.search_limits(1.0)
@@ -251,7 +267,11 @@ def follow_pinion(shaft: RollingShaft, pinion: Array, seats: Array, bend: Array 
 
 
 def _curve(shaft: RollingShaft, coordinates: Array, seats: Array, rows: Array) -> Curvature:
-    """Return the energy of shaft and bearings, and its derivatives by coordinates that move rings by rows."""
+    """Return the energy of shaft and bearings, and its derivatives by the coordinates that are searched.
+
+    `coordinates` (5 + m,) are motion of the pinion and bend; `rows` (5 bearings, k) map the searched
+    ones, all (k = 5 + m) or the bend alone (k = m), to motions of the rings.
+    """
     _, answers = shaft.assemble(coordinates, seats)
     bend, count = coordinates[MOTIONS:], rows.shape[1]
     gradient = rows.T @ np.concatenate([answer.gradient for answer in answers])
@@ -264,6 +284,9 @@ def _curve(shaft: RollingShaft, coordinates: Array, seats: Array, rows: Array) -
 
 
 def _state(shaft: RollingShaft, coordinates: Array, seats: Array) -> ShaftState:
+    """Return loads, ring motions and condensed stiffness at balanced coordinates (5 + m,) of pinion and
+    bend.
+    """
     rings, answers = shaft.assemble(coordinates, seats)
     pinion, bend = coordinates[:MOTIONS], coordinates[MOTIONS:]
     forces = np.array([answer.gradient for answer in answers])
@@ -273,7 +296,7 @@ def _state(shaft: RollingShaft, coordinates: Array, seats: Array) -> ShaftState:
 
 
 def _blocks(answers: Sequence[Curvature]) -> Array:
-    """Return the stiffness of all bearings, (5 bearings, 5 bearings)."""
+    """Return the block-diagonal matrix of the bearings' tangents, (5 bearings, 5 bearings)."""
     size = MOTIONS * len(answers)
     matrix = np.zeros((size, size))
     for number, answer in enumerate(answers):
@@ -283,7 +306,11 @@ def _blocks(answers: Sequence[Curvature]) -> Array:
 
 
 def _condense(shaft: RollingShaft, springs: Array) -> Array:
-    """Return the tangent of pinion and seats, the coordinates of the bent shaft eliminated."""
+    """Return the tangent of the loads by motions of pinion and seats, (5 (1 + bearings), ...), symmetric.
+
+    `springs` are the bearings' tangents by `_blocks`; the bend coordinates are eliminated by a Schur
+    complement.
+    """
     outer = np.concatenate([shaft.rigid, -np.eye(springs.shape[0])], axis=1)
     inner = np.eye(shaft.bending.shape[1]) + shaft.bending.T @ springs @ shaft.bending
     coupling = shaft.bending.T @ springs @ outer

@@ -91,7 +91,9 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
 
 
 def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str, str], Gap]:
-    """Smallest gaps at the positions of `drive` and at finer ones around the most critical of them."""
+    """Return smallest gaps by (pinion part, gear part) at the positions of `drive` and at 17 finer ones
+    around that with the smallest gap of parts that ought not to touch.
+    """
     gaps = smallest_gaps(design, drive.phi1, drive.phi2)
     irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
     worst = min(irregular_gaps, key=lambda gap: gap.gap).phi1
@@ -172,7 +174,7 @@ class Jam:
 
 
 def jam(design: PairDesign, analysis: PairAnalysis) -> Jam | None:
-    """Find where over a pitch the least room is left, if none is; to first order in the depth of
+    """Find whether the bodies jam over a pitch, and where deepest; to first order in the depth of
     interference.
 
     The gear may turn from where drive flanks touch to where back flanks touch, by the backlash; parts that
@@ -200,7 +202,8 @@ def jam(design: PairDesign, analysis: PairAnalysis) -> Jam | None:
 
 
 def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
-    """Compute the turn of the gear that takes its drive side out of the pinion where the drive flanks touch.
+    """Compute how far the gear must turn on from where drive flanks touch until its drive side is out of
+    the pinion.
 
     Parameters
     ----------
@@ -212,7 +215,8 @@ def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
     Returns
     -------
     (p,) array
-        Turn times r_b2, m; 0 where nothing interferes, inf where a part has to move across the turn.
+        Turn times r_b2, m, at least 0; 0 where nothing interferes, inf where a part has to move across
+        the turn.
     """
     outline, largest_turn = pinion_outline(design), np.zeros(len(contact.phi1))
     for points in gear_points(design).values():

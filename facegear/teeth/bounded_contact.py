@@ -41,7 +41,7 @@ class ContactPath:
     """Part of a contact line inside both flanks and both faces.
 
     first, last: ends s along the normal (m), from the gear's tip to its root. first_edge, last_edge: which
-    edge ends it there. pitch: base pitch along the normal, m.
+    edge ends it there, such as "gear tip" or "pinion outer end". pitch: base pitch along the normal, m.
     """
 
     line: ContactLine
@@ -58,12 +58,12 @@ class ContactPath:
 
     @property
     def middle(self) -> float:
-        """Mean of both ends, m."""
+        """Mean of both ends s, m."""
         return (self.first + self.last) / 2
 
 
 def contact_path(family: ToothFamily, line: ContactLine) -> ContactPath:
-    """Cut a contact line with the edges of both flanks.
+    """Cut a contact line with the tips, roots and ends of both flanks.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def contact_path(family: ToothFamily, line: ContactLine) -> ContactPath:
     Returns
     -------
     ContactPath
-        Its part on both flanks.
+        Its part on both flanks; `first` exceeds `last` where there is none.
     """
     helicoid, side, lead = line.helicoid, line.helicoid.side, line.pinion_lead
     foot_y, taper = line.pinion_place, family.taper
@@ -118,7 +118,7 @@ def contact_path(family: ToothFamily, line: ContactLine) -> ContactPath:
 
 
 def _tip_crossing(family: ToothFamily, line: ContactLine) -> float:
-    """Return s (m) at which the line passes the gear's tip surface."""
+    """Return s (m) at which the line passes the gear's tip surface, by Newton's method."""
     tip, foot, normal = family.gear_tip, line.foot, line.normal
     s = float(tip.height(family.inner_radius) - foot[2]) / normal[2]
     for _ in range(STEPS):
@@ -133,7 +133,9 @@ def _tip_crossing(family: ToothFamily, line: ContactLine) -> float:
 
 
 def _radius_crossings(line: ContactLine, radius: float) -> tuple[float, float] | None:
-    """Return both s (m) at which the line passes a cylinder about the gear's axis, None where it does not."""
+    """Return both s (m), in rising order, at which the line passes a cylinder of a radius (m) about the
+    gear's axis, None where it does not.
+    """
     foot, normal = line.foot, line.normal
     square = normal[0] ** 2 + normal[1] ** 2
     half = (foot[0] * normal[0] + foot[1] * normal[1]) / square
@@ -164,25 +166,25 @@ def modified_contact(
     removal: Removal,
     pose: PinionPose | None = None,
 ) -> ModifiedContact:
-    """Compute the unloaded contact of a pinion with modified flanks; edges are left out.
+    """Compute the unloaded contact of a pinion with modified flanks by search; contact at edges is left out.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
     pinion_angle : (p,) array_like
         Pinion angle, rad.
     removal : Removal
-        Depth taken off the pinion.
+        Takes roll and y (m) and returns the depth taken off the pinion, m.
     pose : PinionPose, optional
         Where the pinion stands; the nominal place if None.
 
     Returns
     -------
     ModifiedContact
-        Contact in m.
+        Transmission error, touching pair and its place on the pinion at each angle.
 
     Raises
     ------
@@ -210,14 +212,19 @@ def modified_contact(
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """Search of one pair's contact near the line of the unmodified flanks."""
+    """Search of the contact of pairs one by one, from the contact line of the unmodified flanks."""
 
     family: ToothFamily
     line: ContactLine
     removal: Removal
 
     def touch(self, angle: Array) -> tuple[Array, Array, Array, Mask]:
-        """Return error (rad of the gear), roll and y (m), and whether the contact is on both flanks."""
+        """Return the gear's error (rad), roll and y (m), and whether contact is on both flanks, at angles
+        (n,).
+
+        The place on the pinion is where the gear angle of `error` is stationary, by Newton's method on
+        STENCIL.
+        """
         line, helicoid = self.line, self.line.helicoid
         rolled_angle = line.pinion_slope + helicoid.side * angle + helicoid.phase
         from_base = helicoid.cosine * helicoid.base_radius * rolled_angle
@@ -251,8 +258,11 @@ class _Search:
         return error, roll, y, is_inside & is_near & np.isfinite(error) & np.isfinite(slope)
 
     def error(self, angle: Array, roll: Array, y: Array, near: Array) -> tuple[Array, Array, Mask]:
-        """Return the gear angle less the conjugate one at which points of the pinion lie on the gear's flank
-        (rad), the gear's slope there, and whether they lie on both flanks.
+        """Return by how much the gear angle at which points of the pinion lie on the gear's flank exceeds the
+        conjugate one (rad), the slope psi on the gear there, and whether the points lie on both flanks.
+
+        `angle` (rad), `roll` and `y` (m) of the points are broadcast together; `near` is a start for psi
+        (rad).
         """
         line, family, helicoid = self.line, self.family, self.line.helicoid
         side, base = helicoid.side, helicoid.base_radius
@@ -289,7 +299,9 @@ class _Search:
 
 
 def _newton_step(value: Array) -> Array:
-    """Return the step (n, 2), in steps of the stencil, to where values (n, 11) on it are stationary."""
+    """Return the step (n, 2) across and along, in steps of the stencil, to where values (n, 11) on
+    STENCIL are stationary.
+    """
     right, left, right_2, left_2, up, down, up_2, down_2, corner, opposite, centre = value.T
     x_slope = (8 * (right - left) - (right_2 - left_2)) / 12
     y_slope = (8 * (up - down) - (up_2 - down_2)) / 12

@@ -48,7 +48,7 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
     design : PairDesign
         Pair of gears.
     density : int
-        Number of points on the flank and on the fillet.
+        Number of points on the flank and on the fillet each; lands and chamfer have a twentieth.
 
     Returns
     -------
@@ -94,12 +94,14 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
 
 
 def _upright(normal: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return a normal with its second component reversed."""
+    """Return a normal (x, z) as (x, -z), in the coordinates of the outline."""
     return normal[0], -normal[1]
 
 
 def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Return points and normals along the chamfer of a pinion's tip."""
+    """Return radius (m), polar angle (rad) and outward normal (x, -z) at `count` points along the tip
+    chamfer.
+    """
     (r0, a0) = design.pinion_tip_radius, pinion.tip_half_angle(design)
     r1, a1 = (float(part) for part in pinion.involute_point(design, design.pinion_tip_roll))
     start, end = (np.array([r * np.sin(a), r * np.cos(a)]) for r, a in ((r0, a0), (r1, a1)))
@@ -112,8 +114,7 @@ def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array,
 def signed_distance(
     design: PairDesign, outline: PinionOutline, section: Array, search_radius: float
 ) -> tuple[Array, Integers]:
-    """Compute the signed distance of points from the outline; modifications are taken off the flank and the
-    fillet.
+    """Compute the signed distance of points from the outline of a pinion tooth, modifications included.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def signed_distance(
     outline : PinionOutline
         Outline of the pinion.
     section : (..., 3) array
-        Points, x, -z, y of the tooth's frame, m.
+        Points, x, -z, y of the pinion's body frame, m.
     search_radius : float
         Distance up to which the outline is searched, m.
 
@@ -130,7 +131,7 @@ def signed_distance(
     -------
     tuple of (...) arrays
         Distance, m, negative inside the tooth, inf beyond `search_radius` and the ends of the face; index
-        of the nearest vertex.
+        of the nearest point of the outline.
     """
     distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=search_radius)
     away = np.abs(section[..., 2] - design.mean_radius) > design.pinion.width / 2
@@ -189,7 +190,7 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
     Returns
     -------
     dict[tuple[str, str], Gap]
-        Gap by (pinion part, gear part).
+        Smallest gap by (pinion part, gear part), names of PINION_PARTS and keys of `gear_points`.
     """
     phi1, phi2 = np.atleast_1d(np.asarray(phi1, float)), np.atleast_1d(np.asarray(phi2, float))
     gaps: dict[tuple[str, str], Gap] = {}
@@ -213,7 +214,10 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
 
 
 def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: Array) -> float:
-    """Change of the distance along `normal` per turn of the gear (m/rad)."""
+    """Return the way along `normal` (2,) (x, -z of the pinion) of a gear point per turn of the gear, m/rad.
+
+    `spot`: the point (1, 3) in the gear's body frame, m, phi1 (1,), phi2 (1,), rad, and tooth number (1,).
+    """
     points, phi1, phi2, teeth = spot
     step = 1e-6
     after, before = (
@@ -223,7 +227,7 @@ def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: 
 
 
 def gear_points(design: PairDesign) -> dict[str, Array]:
-    """Return points of the gear's left side in the body frame of its tooth 0.
+    """Return points of the gear's left side, as made, in the body frame of its tooth 0.
 
     Parameters
     ----------
@@ -233,7 +237,7 @@ def gear_points(design: PairDesign) -> dict[str, Array]:
     Returns
     -------
     dict of (n, 3) arrays
-        Points by part, m.
+        Points, m, by part: `tip edge`, `flank`, `fillet` and `root land`.
     """
     face = design.face_gear
     radius = np.linspace(face.inner_radius, face.outer_radius, 27)[None, :]

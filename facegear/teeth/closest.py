@@ -16,7 +16,9 @@ from facegear.teeth.surfaces import flank_points
 
 @dataclass(frozen=True, eq=False)
 class FlankGaps:
-    """Pairs of teeth of a design, each in a placement of its own: p motions, as `to_left_flank` has them."""
+    """Pairs of teeth of a design, each in a placement of its own: p rigid motions of `to_left_flank`,
+    from the pinion's body frame to that of the gear's flank.
+    """
 
     design: PairDesign
     gear: GearSide
@@ -24,7 +26,7 @@ class FlankGaps:
 
     @classmethod
     def of_pairs(cls, design: PairDesign, phi1: Array, phi2: Array, tooth: Array) -> Self:
-        """Return the gaps of pairs of teeth at given angles of both gears.
+        """Place pairs of teeth at given angles of both gears; no gap is computed yet.
 
         Parameters
         ----------
@@ -40,12 +42,12 @@ class FlankGaps:
         Returns
         -------
         FlankGaps
-            Pairs of teeth.
+            The p placed pairs, whose gaps `at` computes.
         """
         return cls(design, GearSide.of_design(design), to_left_flank(design, phi1, phi2, tooth))
 
     def only(self, rows: AnyArray) -> Self:
-        """Return the gaps of some of the pairs.
+        """Return some of the placed pairs.
 
         Parameters
         ----------
@@ -60,7 +62,7 @@ class FlankGaps:
         return type(self)(self.design, self.gear, self.motion.only(rows))
 
     def at(self, roll: Array, y: Array) -> Array:
-        """Compute the separation as `facegear.teeth.separation` does, no farther than a module.
+        """Compute the signed gap of pinion points to the gear along the pinion's normal, see `separation`.
 
         Parameters
         ----------
@@ -72,7 +74,7 @@ class FlankGaps:
         Returns
         -------
         (p, n) array
-            m.
+            m, negative inside the gear; inf where no surface is within a module.
 
         Raises
         ------
@@ -129,8 +131,9 @@ class Closest:
 def closest(
     design: PairDesign, phi1: Array, phi2: Array, near: Closest | None = None, margin: float = np.inf
 ) -> Closest:
-    """Search the flanks of all pairs for the smallest separation, from a coarse grid or around a known
-    result.
+    """Search the flanks of all pairs -2..2 for the point of smallest separation from the gear.
+
+    The search begins with a coarse grid or at a known result; Newton's method or shrinking grids end it.
 
     Parameters
     ----------
@@ -165,13 +168,15 @@ def closest(
 
 
 def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
-    """Return the gaps of all 5 pairs of teeth at p placements, (5 p,)."""
+    """Return the placed pairs -2..2 at angles (p,), rad, of both gears: 5 p motions, the pair counting
+    fastest.
+    """
     turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
     return FlankGaps.of_pairs(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
 
 def bounds(design: PairDesign) -> tuple[Array, Array]:
-    """Return the ends of (roll, y) on the pinion's flank.
+    """Return the limits of the parameters (roll, y) on the pinion's flank.
 
     Parameters
     ----------
@@ -189,7 +194,12 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
 
 
 def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
-    """Return the closest points of each pair by coarse grids, and the size of a grid's cell."""
+    """Return the closest points of each pair by a 15 x 15 grid, and the size of its cell (2,): roll
+    (rad), y (m).
+
+    Pairs within `margin` (m) and a little more of the smallest gap are followed by finer grids, shrunk
+    _FIRST times.
+    """
     low, high = bounds(design)
     face = design.face_gear
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
@@ -210,7 +220,11 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tupl
 def _refine_minima(
     pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
-    """Return minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
+    """Return gap (m), roll (rad) and y (m), (n,) each, of minima near given roll and y.
+
+    Newton's method is used where the gap is smooth, elsewhere grids of first half width `size` (2,), so many
+    times smaller at last as `levels` says.
+    """
     *minimum, smooth = _smooth_minimum(pairs, roll, y)
     rest = np.flatnonzero(~smooth)
     if rest.size:
@@ -224,10 +238,10 @@ def _refine_minima(
 def _walk_grids(
     pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
-    """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it.
+    """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it: gap, roll and y (n,).
 
     The grids lean along the contact line where the walk begins, as the gap is a narrow and flat valley in its
-    direction.
+    direction. `size` (2,) is the first half width in roll (rad) and y (m); the last is _SHRINK^levels of it.
     """
     low, high = bounds(pairs.design)
     width = np.tile(size, (len(roll), 1))
@@ -252,7 +266,8 @@ def _walk_grids(
 
 
 def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Array, Array, Mask]:
-    """Newton's method from 3 x 3 stencils: gap, roll, y, and whether it is a minimum of a smooth gap.
+    """Return gap (m), roll (rad), y (m) by Newton's method on 3 x 3 stencils, and whether each is a
+    minimum of a smooth gap, (n,) each.
 
     Where a modification begins within a stencil, or the flank ends, a finer one has its minimum elsewhere.
     """
@@ -294,8 +309,9 @@ class _Bowl:
 
 
 def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Improve minima (gap, m, roll, rad, y, m) by one Newton step from a 3 x 3 stencil, where they lie inside
-    the flank.
+    """Return minima (gap, m, roll, rad, y, m) after one Newton step from a 3 x 3 stencil.
+
+    A minimum stays as it is where the step leaves the flank or does not make the gap less.
     """
     bowl = _bowl(pairs, roll, y, np.tile(_STEP, (len(roll), 1)))
     low, high = bounds(pairs.design)
@@ -314,7 +330,9 @@ def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Arra
 
 
 def _bowl(pairs: FlankGaps, roll: Array, y: Array, step: Array) -> _Bowl:
-    """Return the paraboloid through gaps on 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
+    """Return paraboloids through gaps on 3 x 3 stencils about roll (rad) and y (m), (n,); `step` (n, 2)
+    is the distance of their points in roll and y.
+    """
     rolls, ys = (
         at[:, None] + _STENCIL[:, axis] * step[:, axis : axis + 1] for axis, at in ((0, roll), (1, y))
     )
@@ -331,7 +349,9 @@ def _bowl(pairs: FlankGaps, roll: Array, y: Array, step: Array) -> _Bowl:
 
 
 def _contact_line(design: PairDesign, roll: Array, y: Array) -> Array:
-    """Slope d roll / d y (rad/m) of the contact line of the nominal pair."""
+    """Return the slope d roll / d y (rad/m) of the contact line of the nominal pair at roll (rad) and y
+    (m).
+    """
     psi = face_gear.local_pressure_angle(design, np.maximum(y, 1.001 * design.gear_base_radius))
     length = design.pinion_base_radius * roll
     shaper_roll = (length + design.shaper_lift * np.sin(psi)) / design.shaper_base_radius

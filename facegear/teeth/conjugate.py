@@ -27,7 +27,7 @@ GEAR_ENDS = ("gear inner end", "gear outer end")
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """Numbers of a pair that the closed form and the ends of the faces need; m and rad.
+    """Eleven numbers of a spur pair that the closed form and the ends of the faces need; m and rad.
 
     first_end, last_end: ends of the common face, distances from the gear's axis along the pinion's.
     """
@@ -91,34 +91,38 @@ class PairNumbers:
 
     @property
     def array(self) -> Array:
-        """All numbers of the pair as one array (11,), as it is stored."""
+        """All numbers as one array (11,) in the order of the fields, m and rad; `of_array` reads it."""
         return np.array(astuple(self))
 
     @cached_property
     def _pinion(self) -> Helicoid:
-        """Drive flank of the pinion."""
+        """Drive flank of the pinion as an involute helicoid without helix."""
         phase = self.pinion_half_base_angle - pi / self.pinion_teeth
         return self._helicoid(self.pinion_base_radius, phase, self.pinion_teeth)
 
     @cached_property
     def _motion(self) -> RelativeMotion:
+        """Nominal motion of the pinion against the gear, without offset at 90 degrees."""
         return RelativeMotion(self.pinion_base_radius / self.gear_base_radius)
 
     @cached_property
     def _gear(self) -> GearFlank:
-        """Drive flank of the gear."""
+        """Drive flank of the gear as its shaper generates it."""
         teeth = self.pinion_teeth * self.shaper_base_radius / self.pinion_base_radius
         shaper = self._helicoid(self.shaper_base_radius, -self.shaper_half_space_angle, teeth)
         motion = RelativeMotion(self.shaper_base_radius / self.gear_base_radius)
         return GearFlank(shaper, motion, self.shaper_lift)
 
     def _helicoid(self, base_radius: float, phase: float, teeth: float) -> Helicoid:
+        """Return the spur drive flank with a base radius (m), a phase (rad, see `Helicoid`) and so many
+        teeth.
+        """
         pitch_radius = base_radius / cos(self.pressure_angle)
         half = phase + pi / teeth
         return Helicoid(1, pitch_radius, base_radius, self.pressure_angle, 0.0, half, phase, self.mean_radius)
 
     def contact_line(self, errors: AssemblyErrors) -> ContactLine | None:
-        """Compute the line of all contact of the drive flanks in an assembly.
+        """Compute the line on which all contact of the drive flanks runs in an assembly, edges left out.
 
         Parameters
         ----------
@@ -136,7 +140,7 @@ class PairNumbers:
         return line if line is not None and line.psi > 0.0 else None
 
     def place_line(self, errors: AssemblyErrors, psi: float, turn: float) -> ContactLine:
-        """Return the line of contact in an assembly by its slope and turn.
+        """Return the line of contact in an assembly by its slope and turn, with no search.
 
         Parameters
         ----------
@@ -166,7 +170,7 @@ class ConjugateContact:
     turn
         Of that normal about the gear's axis (rad).
     transmission_error
-        m, as in `UnloadedContact`.
+        (phi2 - phi1 N1 / N2) r_b2 along the line of action, m, as in `UnloadedContact`.
     y
         Place along the pinion's axis, counted on the pinion (m).
     normal_roll
@@ -181,7 +185,7 @@ class ConjugateContact:
 
 
 def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
-    """Compute `contact_at` in the assembly of a design.
+    """Compute `contact_at` for a design with its own assembly errors.
 
     Parameters
     ----------
@@ -197,7 +201,7 @@ def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
 
 
 def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | None:
-    """Compute the unloaded contact of flanks continued without end, in an assembly.
+    """Compute the unloaded contact of unmodified drive flanks, continued without end, in an assembly.
 
     Parameters
     ----------
@@ -217,13 +221,16 @@ def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | 
 
 
 def _contact_of(line: ContactLine) -> ConjugateContact:
+    """Return the numbers of a contact line in the signs of `ConjugateContact` (its turn is the line's
+    reversed).
+    """
     roll = line.pinion_slope + line.helicoid.phase
     return ConjugateContact(line.psi, -line.turn, line.transmission_error, line.pinion_place, roll)
 
 
 @lru_cache(maxsize=256)
 def exact_contact(design: PairDesign) -> ConjugateContact | None:
-    """Return `conjugate_contact` where it is the contact of the teeth.
+    """Return `conjugate_contact` if it is the real contact of the teeth, else None.
 
     It holds where a whole pitch of the contact path lies on both flanks, within both faces.
 
@@ -249,7 +256,7 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
 
 
 def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float | None:
-    """Compute the offset with which contact occurs at a position along the pinion, other errors as given.
+    """Compute the offset with which contact occurs at a position y along the pinion, by Newton's method.
 
     Parameters
     ----------
@@ -258,7 +265,7 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
     path : float
         Position of the contact along the pinion, m.
     errors : AssemblyErrors
-        Errors of the assembly, whose offset is not used.
+        Errors of the assembly, of which shaft angle and axial shift are used, the offset is not.
 
     Returns
     -------
@@ -282,7 +289,7 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
 
 
 def without_modifications(design: PairDesign) -> bool:
-    """Whether both flanks are as generated.
+    """Whether pinion and gear flanks that touch in drive are as generated.
 
     Parameters
     ----------
@@ -292,7 +299,7 @@ def without_modifications(design: PairDesign) -> bool:
     Returns
     -------
     bool
-        True without modifications and deviations.
+        True without reliefs, crownings, gear modifications and deviations.
     """
     pinion_part = design.pinion
     reliefs = (pinion_part.tip_relief, pinion_part.root_relief, pinion_part.lead_crowning)
@@ -312,7 +319,7 @@ class ConjugateSlopes:
 
 
 def conjugate_slopes(pair: PairNumbers, errors: AssemblyErrors, contact: ConjugateContact) -> ConjugateSlopes:
-    """Compute the derivatives of the contact of a pair by its errors.
+    """Compute the derivatives of the contact of a pair by its assembly errors, in closed form.
 
     Parameters
     ----------

@@ -13,8 +13,8 @@ from facegear.teeth.tooth_family import stack_vectors, turn_about_axis
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
-    """Compute relative curvatures at a point of the gear flank, in the nominal assembly, convex counted
-    positive.
+    """Compute principal relative curvatures (the pinion's plus the gear's) at a point of the gear flank,
+    in the nominal assembly, convex counted positive.
 
     The pinion's radius of curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1
     everywhere, for N_s > N1 on the contact path, where psi is the pressure angle.
@@ -31,7 +31,8 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
     Returns
     -------
     tuple of (...) arrays
-        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
+        Relative curvature of larger and of smaller magnitude, 1/m, and the angle of the contact line, the
+        smaller one's direction, from the pinion's axis, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
     base, flank = design.shaper_base_radius, gear_flank(design.family, -1)
@@ -49,7 +50,8 @@ def opposite_curvatures(
     psi: ArrayLike,
     to_gear: Array,
 ) -> tuple[Array, Array, Array]:
-    """Compute relative curvatures of a pinion point and the opposite gear flank point, in any assembly.
+    """Compute principal relative curvatures of a pinion point and the opposite gear flank point, in any
+    assembly.
 
     Crownings of the gear and deviations of both count; modifications of the pinion, whose curvature is far
     smaller, are left out.
@@ -71,7 +73,7 @@ def opposite_curvatures(
     Returns
     -------
     tuple of (...) arrays
-        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
+        As those of `relative_curvatures`: larger, smaller (1/m) and angle of the contact line (rad).
     """
     pinion_roll, y, roll, psi = np.broadcast_arrays(
         *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
@@ -91,7 +93,8 @@ def opposite_curvatures(
 
 
 def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Return the curvatures (1/m), convex positive, that deviations of the pinion add.
+    """Return the curvatures (1/m), convex positive, that deviations of the pinion add at roll (rad) and y
+    (m).
 
     They are across the profile, where its arc grows by r_b th dth, along the axis, and their twist.
     """
@@ -109,10 +112,11 @@ def _principal(
     axial: Array,
     extra_curvatures: tuple[Array, Array | float, Array | float],
 ) -> tuple[Array, Array, Array]:
-    """Return principal curvatures from the gear's shape operator in the directions of the pinion's tangents.
+    """Return principal relative curvatures from the gear's shape operator in the pinion's tangent directions.
 
-    extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank
-    does not have, the pinion's among them.
+    profile, axial: these unit tangents (..., 3) in the gear's body frame, across and along the pinion's
+    tooth. extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's
+    nominal flank does not have, the pinion's among them. Results: as of `relative_curvatures`.
     """
     flank, length = gear_flank(design.family, -1), design.shaper_base_radius * roll
     tangents = np.stack(flank.tangents(psi, length), axis=-1)
@@ -136,8 +140,10 @@ SAMPLES = 401
 
 
 def smallest_radius(design: PairDesign, body: str) -> float:
-    """Compute the smallest radius of curvature of a fillet's sections: the pinion's, or the gear's over its
+    """Compute the smallest radius of curvature of the pinion's fillet section, or of the gear's over its
     face.
+
+    It is taken from sampled points; the gear's sections are at both ends and where the fillet is sharpest.
 
     Parameters
     ----------
@@ -165,7 +171,9 @@ def smallest_radius(design: PairDesign, body: str) -> float:
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
-    """Return the smallest radius of curvature of a curve given by points, m."""
+    """Return the smallest radius of curvature (m) of a plane curve by points x, z (n,), m, its ends left
+    out.
+    """
     dx, dz = np.gradient(x), np.gradient(z)
     bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
     return float(1.0 / bend[2:-2].max())

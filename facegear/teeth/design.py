@@ -85,6 +85,7 @@ class DeviationGrid:
         return hash((self.face, self.profile, self.deviation))
 
     def __hash__(self) -> int:
+        """Return the hash of the grid, by which designs are keys of caches."""
         return self._hash
 
 
@@ -97,7 +98,7 @@ class Flanks:
 
     @property
     def mirror_image(self) -> "Flanks":
-        """Deviations of the gear seen in a mirror, left and right flank exchanged."""
+        """Deviations of the gear seen in a mirror: left and right flank exchanged, values unchanged."""
         return Flanks(self.left, self.right)
 
 
@@ -193,7 +194,7 @@ class PairDesign:
 
     @property
     def with_swapped_flanks(self) -> "PairDesign":
-        """The pair whose right flanks deviate as its left ones do, and the reverse."""
+        """The pair with the deviations of left and right flanks exchanged on both gears."""
         pinion, gear = self.pinion, self.face_gear
         return replace(
             self,
@@ -203,7 +204,7 @@ class PairDesign:
 
     @property
     def deviates(self) -> bool:
-        """Whether a flank that touches when the pinion drives deviates."""
+        """Whether a drive flank (pinion right, gear left) has deviations other than 0."""
         grids = self.pinion.flanks.right, self.face_gear.flanks.left
         return not all(grid is None or grid.zero for grid in grids)
 
@@ -253,7 +254,7 @@ class PairDesign:
 
     @cached_property
     def pinion_half_base_angle(self) -> float:
-        """Half the pinion's tooth angle on the base circle (rad), thinning included."""
+        """Half the angle of the pinion's tooth on its base circle (rad), thinning taken off."""
         teeth, shift = self.pinion.teeth, self.pinion.profile_shift / self.module
         nominal = pi / (2 * teeth) + 2 * shift * tan(self.pressure_angle) / teeth
         return nominal + involute(self.pressure_angle) - self.pinion.thinning / (2 * self.pinion_base_radius)
@@ -281,12 +282,14 @@ class PairDesign:
 
     @cached_property
     def shaper_rounding_centre(self) -> float:
-        """Distance (m) of the centre of the shaper's tip rounding from its axis; a sharp edge's own."""
+        """Distance (m) of the centre of the shaper's tip rounding, or of a sharp edge, from its axis."""
         return self.shaper_tip_radius - self.shaper.tip_rounding
 
     @cached_property
     def shaper_rounding_roll(self) -> float:
-        """Tangent of the pressure angle at that centre: its roll angle (rad) on an involute of its own."""
+        """Roll angle (rad) of an involute through the tip rounding's centre: the tangent of its pressure
+        angle.
+        """
         return sqrt(max((self.shaper_rounding_centre / self.shaper_base_radius) ** 2 - 1, 0.0))
 
     @cached_property
@@ -355,7 +358,7 @@ class Material:
 
 
 def as_cut(design: PairDesign) -> PairDesign:
-    """Return the pair with flanks as they are generated, assembled without errors.
+    """Return the pair with flanks as generated, assembled without errors: a key for caches.
 
     Many designs share one such pair.
 
@@ -378,7 +381,7 @@ def as_cut(design: PairDesign) -> PairDesign:
 
 
 def linear(relief: Relief, from_end: Array) -> Array:
-    """Compute the removed depth of a tip, root or end relief.
+    """Compute the removed depth of a tip, root or end relief: `amount` at the end, falling linearly to 0.
 
     Parameters
     ----------
@@ -399,7 +402,7 @@ def linear(relief: Relief, from_end: Array) -> Array:
 
 
 def parabola(relief: Relief, from_middle: Array) -> Array:
-    """Compute the removed depth of a crowning.
+    """Compute the removed depth of a crowning, amount ((from_middle - start) / length)^2 beyond the start.
 
     Parameters
     ----------
@@ -419,7 +422,7 @@ def parabola(relief: Relief, from_middle: Array) -> Array:
 
 
 def parabola_curvature(relief: Relief, from_middle: Array) -> Array:
-    """Compute the second derivative of `parabola`.
+    """Compute the second derivative of `parabola` by the distance.
 
     Parameters
     ----------

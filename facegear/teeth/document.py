@@ -54,7 +54,7 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     design : PairDesign
         Pair of gears.
     transmission_error : float
-        Mean unloaded transmission error, m, see `unloaded`.
+        Mean unloaded transmission error, m, which turns the gear on until the flanks touch.
     shape : tuple[int, int]
         Number of points along profile and width.
 
@@ -83,6 +83,7 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     radius = np.hypot(hit[:, 0], hit[:, 1])
 
     def facing_values(values: Array) -> Array:
+        """Return values (n,) as the grid, 0 where a point does not meet the flank."""
         return np.where(is_facing, values, 0.0).reshape(shape)
 
     return EaseOff(
@@ -109,7 +110,7 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Values by key, units in the keys.
+        Values by key, units in the keys; in `design_si` all are in SI units.
     """
     limits = analysis.limits
     roll, large, small, slope = path_curvatures(design)
@@ -147,7 +148,9 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
 
 
 def _contact(contact: UnloadedContact) -> dict[str, Any]:
-    """Return the record of an unloaded contact: angles, transmission error and path."""
+    """Return the entry `unloaded` of `pair_record` for one side: angles, transmission error and contact
+    path.
+    """
     roll, y = contact.path
     error = 1e6 * contact.transmission_error
     return {
@@ -161,7 +164,7 @@ def _contact(contact: UnloadedContact) -> dict[str, Any]:
 
 
 def _gap(gap: Gap) -> dict[str, Any]:
-    """Return the record of a gap: its size and where on both bodies."""
+    """Return the entry of `pair_record` for a gap: its size, and where on both bodies."""
     return {
         "gap_um": 1e6 * gap.gap,
         "along_line_of_action_um": 1e6 * gap.approach if np.isfinite(gap.approach) else None,
@@ -188,7 +191,8 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
     Returns
     -------
     dict of (profile, width, 3) arrays
-        Points, m, and `pinion_section` (n, 2), m.
+        Points, m: `pinion_flank`, `pinion_fillet`, `gear_flank`, `gear_fillet`, and `pinion_section` (n,
+        2), the outline of half a tooth in (x, -z).
     """
     half = design.pinion.width / 2
     y = np.linspace(design.mean_radius - half, design.mean_radius + half, width)[None, :]
@@ -225,7 +229,8 @@ def contact_arrays(design: PairDesign, analysis: PairAnalysis, contours: EaseOff
     Returns
     -------
     dict of (...) arrays
-        Arrays by name, in SI units.
+        Arrays by name, in SI units: fields of the ease-off as `contour_...`, contact path sorted by roll,
+        phi1, conjugate phi2, transmission error and backlash.
     """
     roll, y = analysis.drive.path
     order = np.argsort(roll)

@@ -19,7 +19,7 @@ from facegear.teeth.generated_flank import GearFlank, gear_flank
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
-    """Return the numbers of the shaper that the closed forms take.
+    """Return the four numbers of the shaper that the kernel of rays takes.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
 
 
 def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute points of the flank; roll and slope are broadcast together.
+    """Compute points of the right flank in the gear's body frame; roll and slope are broadcast together.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute outward unit normals of the flank.
+    """Compute unit normals of the right flank in the gear's body frame, out of the tooth.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
 
 
 def _flank(design: PairDesign) -> GearFlank:
-    """Return the right flank as a member of the family of all teeth."""
+    """Return the gear's right (coast) flank as a surface of `generated_flank`."""
     return gear_flank(design.family, -1)
 
 
@@ -125,7 +125,7 @@ def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
-    """Compute the slope psi of the flank point with a given roll on the cylinder of a gear radius.
+    """Find the slope psi of the flank point with a given roll on the cylinder of a gear radius, by Newton.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
-    """Compute roll and slope of the flank at a gear radius and a height.
+    """Find roll and slope of the flank point at a gear radius and a height z, by Newton's method.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
 
 
 def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
-    """Compute points of the flank's tip edge.
+    """Compute points of the unmodified flank's tip edge, where it meets the tip plane.
 
     Parameters
     ----------
@@ -195,7 +195,9 @@ def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class TipEdge:
-    """The flank's tip edge, as it is generated: th and gear angle (rad) by gear radius (m)."""
+    """The right flank's tip edge, as generated: splines of th and of gear angle from the tooth's middle
+    (rad) by gear radius (m).
+    """
 
     roll: "scipy.interpolate.CubicSpline"
     angle: "scipy.interpolate.CubicSpline"
@@ -219,7 +221,7 @@ def tip_edge_by_radius(design: PairDesign) -> TipEdge:
 
 @lru_cache(maxsize=16)
 def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
-    """Return the tip edge of the flank as a function of the radius, tabulated once for each design."""
+    """Return cubic splines through 65 exact points of the tip edge of a pair by `as_cut`; cached."""
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
     roll, psi = roll_and_psi_at_height(design, radius, design.gear_tip_plane)
@@ -229,7 +231,8 @@ def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
 
 
 def edge_start(design: PairDesign) -> float:
-    """Compute chi_0, the angle of the centre of the shaper's tip rounding from the vertical at phi_s = 0.
+    """Compute chi_0, the angle about the shaper's axis of its tip rounding's centre from the vertical at
+    phi_s = 0.
 
     Parameters
     ----------
@@ -253,7 +256,7 @@ def cylindrical(radius: ArrayLike, beta: ArrayLike, z: ArrayLike) -> Array:
     radius : (...) array_like
         Gear radius, m.
     beta : (...) array_like
-        Gear angle, rad.
+        Gear angle from +y towards +x, rad.
     z : (...) array_like
         Height, m.
 

@@ -15,7 +15,7 @@ from facegear.teeth.tooth_family import turn_about_axis
 
 
 def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
-    """Compute gear angle and height of the fillet.
+    """Find gear angle and height of the right side's fillet on a cylinder, by Newton's method.
 
     psi runs from `fillet_start` to pi/2, where the fillet touches the root plane.
 
@@ -31,7 +31,7 @@ def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tup
     Returns
     -------
     tuple of (...) arrays
-        Gear angle, rad, and z, m.
+        Gear angle from the tooth's middle, rad, and z, m.
     """
     points = gear_fillet(design.family, -1).at_slope(radius, psi)
     position = turn_about_axis(points.turn, points.position)
@@ -49,7 +49,7 @@ def tip_numbers(design: PairDesign) -> tuple[float, float, float, float, float]:
     Returns
     -------
     tuple[float, float, float, float, float]
-        Centre (m), rounding (m), ratio m2s, lift (m) and chi_0 (rad).
+        Radius of the rounding's centre (m), rounding (m), ratio m2s, lift (m) and chi_0 (rad, `edge_start`).
     """
     centre, rounding = design.shaper_rounding_centre, design.shaper.tip_rounding
     return centre, rounding, design.shaper_ratio, design.shaper_lift, edge_start(design)
@@ -74,7 +74,7 @@ def fillet_start(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def fillet_slopes(design: PairDesign, radius: ArrayLike, fraction: ArrayLike) -> Array:
-    """Compute the slope psi at a fraction of the fillet's turn.
+    """Compute the slope psi at a fraction of the way from `fillet_start` to pi/2.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def fillet_fraction(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Ar
 
 
 def fillet_normal(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Compute outward unit normals of the fillet.
+    """Compute unit normals of the right side's fillet in the gear's body frame, out of the material.
 
     Parameters
     ----------

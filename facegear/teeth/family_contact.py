@@ -37,7 +37,7 @@ class PinionPose:
     outwards: float = 0.0
 
     def frame(self, nominal: RelativeMotion, middle: float) -> tuple[RelativeMotion, Vector]:
-        """Return the motion with the pose's shaft angle, and the middle of the pinion's face.
+        """Return the motion with the pose's shaft angle, and where the middle of the pinion's face stands.
 
         Parameters
         ----------
@@ -64,13 +64,13 @@ class PinionPose:
 
 @dataclass(frozen=True, eq=False)
 class ContactFrame:
-    """Points and unit normals (..., 3) of a mesh in the mesh frame; points in m."""
+    """Contact points (m) and unit normals from pinion to gear, (..., 3) each, in the mesh frame."""
 
     points: Array
     normals: Array
 
     def wrench(self, about: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
-        """Return force and moment per unit of mesh force.
+        """Return force and moment of the pinion on the gear per unit of mesh force.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class ContactFrame:
         Returns
         -------
         (..., 6) array
-            Force, dimensionless, and moment, m.
+            Force (first three, dimensionless) and moment about that point (m) in the mesh frame.
         """
         moment = np.cross(self.points - np.asarray(about, float), self.normals)
         return np.concatenate([self.normals, moment], axis=-1)
@@ -125,16 +125,16 @@ class ContactLine:
 
     @cached_property
     def posed_frame(self) -> tuple[RelativeMotion, Vector]:
-        """Motion with the pose's shaft angle, and the middle of the pinion's face in the mesh frame (m)."""
+        """`PinionPose.frame` of this line: motion with the posed shaft angle, and the face's middle (m)."""
         return self.pose.frame(self.motion, self.helicoid.middle)
 
     @cached_property
     def base_pitch(self) -> float:
-        """Length (m) along the normal per radian of the pinion's turn."""
+        """Way of the contact along the normal per radian of the pinion's turn, r_b C, m/rad."""
         return self.helicoid.base_radius * self.helicoid.cosine
 
     def point(self, s: ArrayLike) -> Array:
-        """Return points of the line.
+        """Return points of the line, foot + s normal.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ class ContactLine:
         return self.foot + np.asarray(s, float)[..., None] * self.normal
 
     def pinion_y(self, s: ArrayLike) -> Array:
-        """Return place_slopes along the pinion's axis, counted on the pinion.
+        """Return where points of the line are along the pinion, counted on its face.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class ContactLine:
         return self.pinion_place + self.helicoid.sine * (np.asarray(s, float) + self.pinion_lead)
 
     def frame(self, s: ArrayLike) -> ContactFrame:
-        """Return the contact frame of points of the line.
+        """Return points of the line with the common normal, which is the same at all of them.
 
         Parameters
         ----------
@@ -180,7 +180,7 @@ class ContactLine:
         return ContactFrame(points, np.broadcast_to(self.normal, points.shape))
 
     def sliding(self, s: ArrayLike) -> Array:
-        """Compute the sliding speed per speed of the pinion.
+        """Compute the magnitude of the sliding velocity per rotational speed of the pinion.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ class ContactLine:
         Returns
         -------
         (...) array
-            Speed of the pinion's point against the gear's, m/rad.
+            Speed of the pinion's point against the gear's, m/rad, never negative.
         """
         points, (motion, middle) = self.point(s), self.posed_frame
         pinion = np.cross(points - np.array(middle), motion.basis[1])
@@ -198,7 +198,7 @@ class ContactLine:
         return np.linalg.norm(pinion - gear, axis=-1)
 
     def curvatures(self, s: ArrayLike) -> tuple[Array, Array, Array]:
-        """Compute the relative curvatures of pinion and gear.
+        """Compute the principal relative curvatures of pinion and gear at the contact.
 
         Parameters
         ----------
@@ -208,8 +208,8 @@ class ContactLine:
         Returns
         -------
         tuple of (...) arrays
-            Larger and smaller relative curvature, 1/m, and the angle of the smaller one's direction from the
-            pinion's generator, rad.
+            Relative curvature of larger and of smaller magnitude, 1/m, convex positive, and the angle of
+            the smaller one's direction from the pinion's generator, rad.
         """
         s = np.asarray(s, float)
         lines = self.gear.lines(self.psi)
@@ -231,13 +231,13 @@ class ContactLine:
         return large, small, np.arctan(long[..., 1] / long[..., 0])
 
     def error_slopes(self) -> tuple[Array, Array]:
-        """Compute how the contact changes with the pose.
+        """Compute the derivatives of the contact by the pose of the pinion, at this pose.
 
         Returns
         -------
         tuple of (4,) arrays
-            Derivatives of transmission error and of `pinion_place` by offset, axial shift, error of the shaft
-            angle and the pinion's place outwards, m/m and m/rad.
+            Derivatives of transmission error and of `pinion_place`, each by offset, axial shift, error of
+            the shaft angle and the pinion's place outwards, m/m and m/rad.
         """
         side, eta, outwards = self.helicoid.side, self.helicoid.sine, self.pose.outwards
         motion, middle = self.posed_frame
@@ -279,14 +279,14 @@ class ContactLine:
 
 
 def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None) -> ContactLine | None:
-    """Compute the unloaded contact of a flank, continued beyond its edges, in a pose.
+    """Compute the line of unloaded contact of a flank, continued beyond its edges, in a pose.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
     pose : PinionPose, optional
         Where the pinion stands; the nominal place if None.
 
@@ -303,7 +303,7 @@ def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None)
 def find_line(
     flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose
 ) -> ContactLine | None:
-    """Compute the unloaded contact of flanks of gear and pinion, continued beyond their edges, in a pose.
+    """Compute `contact_line` from the flanks themselves: solve for slope and turn, then `place_line`.
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def find_line(
 def place_line(
     flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose, psi: float, turn: float
 ) -> ContactLine:
-    """Return the contact line in a pose by its slope and turn.
+    """Compute all numbers of the contact line in a pose from its known slope and turn.
 
     Parameters
     ----------
@@ -389,7 +389,11 @@ def place_line(
 def _solve(
     flank: GearFlank, helicoid: Helicoid, axis: Vector, middle: Vector, psi: float
 ) -> tuple[float, float] | None:
-    """Return slope and turn of the line that touches the pinion's base cylinder; None where there is none."""
+    """Return slope and turn (rad) of the gear's normal that touches the pinion's base cylinder, or None.
+
+    Newton's method from (psi, 0): the normal has the component sin(base helix) along the pinion's unit `axis`
+    and the moment r_b cos(base helix) about it; `middle` (m) is a point of the axis.
+    """
     turn, side, target = 0.0, helicoid.side, helicoid.base_radius * helicoid.cosine
     for _ in range(STEPS):
         parts = flank.line_components(cos(psi), sin(psi))
@@ -419,11 +423,13 @@ def _solve(
 
 
 def _turn_back(vector: tuple[float, ...], turn: float) -> Vector:
+    """Return a vector turned by -turn (rad) about the gear's axis +z."""
     c, s = cos(turn), sin(turn)
     return vector[0] * c + vector[1] * s, vector[1] * c - vector[0] * s, vector[2]
 
 
 def _product(first: Vector, second: Vector) -> float:
+    """Return the scalar product of two vectors."""
     return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 

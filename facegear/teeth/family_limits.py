@@ -66,7 +66,9 @@ class FamilyLimits:
 
     @cached_property
     def inner(self) -> tuple[float, str, int]:
-        """Smallest radius (m) of a face, the reason, and the sign of the flank that decides."""
+        """Smallest radius (m) at which a face may begin, the reason, and the sign of the flank that
+        decides.
+        """
         radii = [start.limit[0] for start in self.starts]
         first = int(np.argmax(radii))
         return radii[first], self.starts[first].limit[1], SIDES[first]
@@ -74,7 +76,7 @@ class FamilyLimits:
 
 @lru_cache(maxsize=64)
 def family_limits(family: ToothFamily) -> FamilyLimits:
-    """Compute the limits of the face.
+    """Compute the gear radii between which the face may lie, by `flank_start` and `pointing_radius`.
 
     Parameters
     ----------
@@ -96,14 +98,14 @@ def family_limits(family: ToothFamily) -> FamilyLimits:
 
 
 def flank_start(family: ToothFamily, side: int) -> FlankStart:
-    """Compute where a flank begins and why.
+    """Compute the smallest gear radius of a flank and what limits it.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
 
     Returns
     -------
@@ -118,7 +120,9 @@ def flank_start(family: ToothFamily, side: int) -> FlankStart:
     flank = gear_flank(family, side)
 
     def measures(psi: ArrayLike) -> tuple[Array, Array]:
-        """Return the gear radius, and three measures that are positive on a sound flank."""
+        """Return the gear radius (m) of the flank's end at slopes (...), and two measures (2, ...) that
+        are positive on a sound flank: `soundness` (m2/rad) and height left below the tip surface (m).
+        """
         s = flank_end(family, side, psi)
         lines = flank.lines(psi)
         point = lines.foot + s[..., None] * lines.normal
@@ -157,7 +161,7 @@ def flank_start(family: ToothFamily, side: int) -> FlankStart:
 
 
 def singular_quadratic(flank: GearFlank, psi: ArrayLike) -> tuple[Array, Array, Array]:
-    """Return the quadratic in s that vanishes on the singular line of a flank.
+    """Return the coefficients of the quadratic in s that vanishes on the singular line (undercut) of a flank.
 
     Parameters
     ----------
@@ -180,7 +184,7 @@ def singular_quadratic(flank: GearFlank, psi: ArrayLike) -> tuple[Array, Array, 
 
 
 def soundness(flank: GearFlank, psi: ArrayLike, s: ArrayLike) -> Array:
-    """Return the singular line's quadratic with a sign that is positive on a sound flank.
+    """Return the quadratic of `singular_quadratic`, its sign such that it is positive on a sound flank.
 
     Parameters
     ----------
@@ -198,6 +202,7 @@ def soundness(flank: GearFlank, psi: ArrayLike, s: ArrayLike) -> Array:
     """
 
     def quadratic(psi: ArrayLike, s: ArrayLike) -> Array:
+        """Return the quadratic at psi (rad) and s (m), m2/rad."""
         square, linear, constant = singular_quadratic(flank, psi)
         return (square * np.asarray(s, float) + linear) * s + constant
 
@@ -205,10 +210,13 @@ def soundness(flank: GearFlank, psi: ArrayLike, s: ArrayLike) -> Array:
 
 
 def _involute_start(family: ToothFamily, side: int) -> float:
-    """Return the largest gear radius (m) at which the shaper's involute begins on the tip surface, or nan."""
+    """Return the largest gear radius (m) at which the start of the shaper's involute (s = 0) cuts a sound
+    place of the tip surface; nan if there is none.
+    """
     flank, tip = gear_flank(family, side), family.gear_tip
 
     def below(psi: ArrayLike) -> Array:
+        """Return how far (m) the feet s = 0 of lines with slopes psi lie below the tip surface."""
         foot = flank.lines(psi).foot
         return tip.height(np.hypot(foot[..., 0], foot[..., 1])) - foot[..., 2]
 
@@ -225,7 +233,7 @@ def _involute_start(family: ToothFamily, side: int) -> float:
 
 
 def tip_land(family: ToothFamily, radius: ArrayLike) -> Array:
-    """Compute the width of the gear's tip land.
+    """Compute the width of the gear's tip land, the arc between both flanks on the tip surface.
 
     Parameters
     ----------
@@ -310,7 +318,7 @@ def pointing_radius(family: ToothFamily, inner: float) -> float:
 
 
 def check_family(family: ToothFamily, thinnest: float = 0.0) -> FamilyLimits:
-    """Compute the limits and refuse a family whose face lies beyond them or whose lands vanish.
+    """Compute the limits; raise for a family whose face lies beyond them or whose lands are too thin.
 
     Parameters
     ----------

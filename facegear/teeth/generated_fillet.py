@@ -74,7 +74,7 @@ class GearFillet:
     taper: float
 
     def last_angle(self, y: ArrayLike) -> Array:
-        """Return the angle of the lowest place's normal from the flank's.
+        """Return the largest Delta: the angle of the lowest place's normal from the flank's.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class GearFillet:
         return np.arctan2(self.shaper.base_radius, self._roll(np.asarray(y, float))[0])
 
     def generate(self, y: ArrayLike, angle: ArrayLike) -> FilletPoints:
-        """Compute points of the fillet and all derivatives.
+        """Compute points of the fillet as they are generated, in the mesh frame, and all derivatives.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class GearFillet:
         )
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute points of the fillet.
+        """Compute points of the fillet in the gear's body frame.
 
         Parameters
         ----------
@@ -199,7 +199,7 @@ class GearFillet:
         return -turn_about_axis(points.turn, points.normal)
 
     def tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the points.
+        """Compute the exact derivatives of `point`.
 
         Parameters
         ----------
@@ -222,7 +222,7 @@ class GearFillet:
         return by_y + (v * last_y)[..., None] * by_angle, self.last_angle(u)[..., None] * by_angle
 
     def y_at(self, radius: ArrayLike, part: ArrayLike) -> Array:
-        """Find where along the pinion's axis a point of the fillet at a gear radius is generated.
+        """Find the parameter y of the fillet's point at a gear radius and a part, by Newton's method.
 
         Parameters
         ----------
@@ -264,7 +264,7 @@ class GearFillet:
         raise NotConverged("geometry", "fillet at a gear radius", f"{STEPS} Newton steps")
 
     def at_slope(self, radius: ArrayLike, psi: ArrayLike) -> FilletPoints:
-        """Find points of the fillet by gear radius and slope of the normal.
+        """Find points of the fillet by gear radius and slope of the normal, by Newton's method.
 
         Parameters
         ----------
@@ -317,7 +317,7 @@ class GearFillet:
         Returns
         -------
         (..., 2) array
-            Curvatures, 1/m, in rising order; inf at the corner that a sharp edge leaves.
+            Curvatures, 1/m, in rising order, with sign; inf at the corner that a sharp edge leaves.
         """
         points = self._at(y, part)
         tangents = np.stack(self._unturned_tangents(points), axis=-2)
@@ -355,6 +355,7 @@ class GearFillet:
         """
 
         def sharpness(part: ArrayLike) -> Array:
+            """Return the largest magnitude of curvature (1/m) at parts (...) of the section."""
             return np.abs(self.curvatures(self.y_at(radius, part), part)).max(axis=-1)
 
         parts = np.linspace(0.0, 1.0, SAMPLES)
@@ -372,23 +373,27 @@ class GearFillet:
         return 1.0 / max(float(-solution.fun), float(sharp[best]))
 
     def _at(self, y: ArrayLike, part: ArrayLike) -> FilletPoints:
+        """Return `generate` at the part (0 to 1) of the largest Delta."""
         return self.generate(y, np.asarray(part, float) * self.last_angle(y))
 
     def _roll(self, y: Array) -> tuple[Array, Array]:
-        """Return the length of roll (m) of the ball's centre on the shaper's involute, and its slope."""
+        """Return the length of roll (m) of the ball's centre, sqrt(radius^2 - r_b^2), and its slope by y."""
         centre = self.centre_radius + (y - self.shaper.middle) * self.taper
         with np.errstate(invalid="ignore"):
             roll = np.sqrt(centre**2 - self.shaper.base_radius**2)
         return roll, centre * self.taper / roll
 
     def _components(self, normal: Array, square: Array | float, along: Array, psi: Array) -> Array:
-        """Return vectors from components along the normal's section, square to it, and along the axis."""
+        """Return mesh-frame vectors (..., 3) from parts along the normal in the section, square to it,
+        and along a.
+        """
         cp, sp, side = np.cos(psi), np.sin(psi), self.shaper.side
         x, u = side * (normal * cp - square * sp), -(normal * sp + square * cp)
         gamma_s, gamma_c = self.motion.sine, self.motion.cosine
         return np.stack([x, along * gamma_s + u * gamma_c, u * gamma_s - along * gamma_c], axis=-1)
 
     def _unturned_tangents(self, points: FilletPoints) -> tuple[Array, Array]:
+        """Return tangents (..., 3) by y and by Delta (m/rad), before they are turned to the body frame."""
         around = across_axis(points.position)
         first, second = (
             slope + turn[..., None] * around
@@ -399,14 +404,14 @@ class GearFillet:
 
 @lru_cache(maxsize=256)
 def gear_fillet(family: ToothFamily, side: int) -> GearFillet:
-    """Return the fillet beside a flank of the gear of a family.
+    """Return the fillet that the shaper's tip cuts beside a flank of the gear.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
 
     Returns
     -------
@@ -421,14 +426,14 @@ def gear_fillet(family: ToothFamily, side: int) -> GearFillet:
 
 
 def flank_end(family: ToothFamily, side: int, psi: ArrayLike) -> Array:
-    """Compute where the flank ends: at the shaper's tip edge or where its tip rounding begins.
+    """Compute s where the gear's flank ends: at the shaper's tip edge or where its tip rounding begins.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
     psi : (...) array_like
         Slope of the normal, rad.
 

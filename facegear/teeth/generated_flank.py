@@ -52,7 +52,7 @@ ROUNDING = 16 * np.finfo(float).eps
 
 @dataclass(frozen=True, eq=False)
 class NormalLines:
-    """Lines of contact of shaper and gear, one for each slope, and their derivatives by the slope.
+    """Lines of contact of shaper and gear in the mesh frame, one a slope psi, and their derivatives by psi.
 
     foot, foot_slope: place (..., 3) on the shaper's base cylinder (m) and its derivative (m/rad). normal,
     normal_slope: direction from pinion to gear (..., 3) and its derivative. y, y_slope: place of the foot
@@ -80,12 +80,12 @@ class GearFlank:
 
     @cached_property
     def rise(self) -> float:
-        """Turn of the gear per length along the normal, rad/m."""
+        """Turn of the gear per length s along the normal, rad/m, signed as the flank."""
         shaper = self.shaper
         return shaper.side * self.motion.ratio / (shaper.cosine * shaper.base_radius)
 
     def lines(self, psi: ArrayLike) -> NormalLines:
-        """Return the lines of contact of given slopes.
+        """Return the lines in space on which shaper and gear touch with given slopes of the normal.
 
         Parameters
         ----------
@@ -138,7 +138,7 @@ class GearFlank:
         )
 
     def turn(self, psi: ArrayLike, s: ArrayLike, y: ArrayLike) -> Array:
-        """Return the gear's turn since a point was generated.
+        """Return the angle by which the gear has turned since the shaper generated a point.
 
         Parameters
         ----------
@@ -161,7 +161,7 @@ class GearFlank:
         )
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute points of the flank.
+        """Compute points of the flank in the body frame, in closed form.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class GearFlank:
         return stack_vectors(x * c - y * sine, x * sine + y * c, parts[2] + s * parts[8])
 
     def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute outward unit normals of the flank.
+        """Compute unit normals of the flank in the body frame, out of the gear's tooth.
 
         Parameters
         ----------
@@ -201,7 +201,7 @@ class GearFlank:
         return -turn_about_axis(self.turn(u, v, lines.y), lines.normal)
 
     def tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the points.
+        """Compute the exact derivatives of `point`.
 
         Parameters
         ----------
@@ -221,7 +221,7 @@ class GearFlank:
         return turn_about_axis(turn, by_psi), turn_about_axis(turn, by_s)
 
     def normal_tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the outward unit normals.
+        """Compute the exact derivatives of `normal`.
 
         Parameters
         ----------
@@ -242,7 +242,7 @@ class GearFlank:
         return -turn_about_axis(turn, by_psi), -turn_about_axis(turn, self.rise * around)
 
     def parameters_at(self, radius: ArrayLike, height: ArrayLike) -> tuple[Array, Array]:
-        """Find the parameters of the flank at a gear radius and a height.
+        """Find the parameters of the flank's point at a gear radius and a height, by Newton's method in psi.
 
         Parameters
         ----------
@@ -279,7 +279,7 @@ class GearFlank:
         height : (...) array
             Height z, m.
         near : (...) array_like, optional
-            Slopes to start from, rad.
+            Slopes to start from, rad; by default those of spur teeth.
 
         Returns
         -------
@@ -300,7 +300,7 @@ class GearFlank:
         return psi, s
 
     def slope_at(self, radius: ArrayLike, s: ArrayLike) -> Array:
-        """Find the slope of the flank at a gear radius and a distance along the normal.
+        """Find the slope psi of the flank's point with a gear radius and a distance s along the normal.
 
         Parameters
         ----------
@@ -322,6 +322,7 @@ class GearFlank:
         radius, s = np.broadcast_arrays(np.asarray(radius, float), np.asarray(s, float))
 
         def residual(parts: tuple[Array, ...]) -> tuple[Array, Array]:
+            """Return the excess of the squared radius (m2) at the given s, and its slope by psi."""
             return _radius_residual(parts, radius, s, 0.0)
 
         psi, _, is_found = self._newton(self._spur_slope(radius), radius, residual)
@@ -355,9 +356,12 @@ class GearFlank:
         return np.arccos(np.clip(self.shaper.base_radius / self.motion.ratio / radius, -1.0, FLATTEST))
 
     def _sound_place(self, start: Array, radius: Array, height: Array) -> tuple[Array, Array]:
-        """Return psi and s at radii and heights, nan where there is no root before the singular line."""
+        """Return psi and s (n,) at radii and heights (n,) from starts of psi; nan if no root is on the
+        sound side.
+        """
 
         def residual(parts: tuple[Array, ...]) -> tuple[Array, Array]:
+            """Return the excess of the squared radius (m2) at the given height, and its slope by psi."""
             return _radius_residual(parts, radius, *_distance_at(parts, height))
 
         psi, slope, is_found = self._newton(start, radius, residual)
@@ -369,7 +373,9 @@ class GearFlank:
     def _newton(
         self, start: Array, radius: Array, residual: Callable[[tuple[Array, ...]], tuple[Array, Array]]
     ) -> tuple[Array, Array, Mask]:
-        """Return roots of a residual of squared radii, its slope there, and whether each is a root."""
+        """Return psi (n,), the residual's slope (m2/rad) there, and whether each is a root; psi stays in
+        SLOPES.
+        """
         psi = np.asarray(start, float)
         for _ in range(STEPS):
             value, slope = residual(self.line_components(np.cos(psi), np.sin(psi)))
@@ -383,7 +389,7 @@ class GearFlank:
 
     @cached_property
     def _growth_sign(self) -> float:
-        """Sign of the growth of the radius with the slope, at one height, on the pitch line."""
+        """Sign of d radius / d psi at constant height on the pitch line, which all sound places share."""
         angle = self.shaper.pressure_angle
         parts = self.line_components(np.cos(angle), np.sin(angle))
         height = parts[2] + self.pitch_distance * parts[8]
@@ -391,20 +397,22 @@ class GearFlank:
 
     @property
     def pitch_distance(self) -> float:
-        """Distance (m) of the pitch line along its normal."""
+        """Distance s (m) at which the normal of the nominal slope meets the shaper's pitch line."""
         return self.shaper.pitch_radius * float(np.sin(self.shaper.pressure_angle)) / self.shaper.cosine
 
     def _turn_by_psi(self, lines: NormalLines) -> Array:
+        """Return the derivative of the turn by psi (...), dimensionless."""
         return self.rise * self.shaper.sine * lines.y_slope - self.shaper.side * self.motion.ratio
 
     def _unturned_tangents(self, lines: NormalLines, s: Array) -> tuple[Array, Array]:
+        """Return the tangents (..., 3) by psi (m/rad) and by s, before they are turned to the body frame."""
         around = across_axis(lines.foot + s[..., None] * lines.normal)
         by_psi = lines.foot_slope + s[..., None] * lines.normal_slope
         return by_psi + self._turn_by_psi(lines)[..., None] * around, lines.normal + self.rise * around
 
 
 def _distance_at(parts: tuple[Numbers, ...], height: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the distances (m) along lines at which they reach a height, and their slopes by psi."""
+    """Return s (m) at which lines of `line_components` reach a height z, and d s / d psi at that height."""
     s = (height - parts[2]) / parts[8]
     return s, -(parts[5] + s * parts[11]) / parts[8]
 
@@ -412,7 +420,7 @@ def _distance_at(parts: tuple[Numbers, ...], height: Numbers) -> tuple[Numbers, 
 def _radius_residual(
     parts: tuple[Numbers, ...], radius: Numbers, s: Numbers, s_psi: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Return by how much the squared radius of lines at s is too large, and its derivative by psi."""
+    """Return x^2 + y^2 - radius^2 (m2) of lines at s, and its derivative by psi, s changing by `s_psi`."""
     x, y = parts[0] + s * parts[6], parts[1] + s * parts[7]
     x_psi = parts[3] + s * parts[9] + s_psi * parts[6]
     y_psi = parts[4] + s * parts[10] + s_psi * parts[7]
@@ -421,14 +429,14 @@ def _radius_residual(
 
 @lru_cache(maxsize=256)
 def gear_flank(family: ToothFamily, side: int) -> GearFlank:
-    """Return a flank of the gear of a family.
+    """Return the flank of the gear that the family's shaper generates.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class PinionFlank:
     helicoid: Helicoid
 
     def slope(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute the slope of the normal in the transverse section.
+        """Compute the slope psi of the normal against x in the transverse section.
 
         Parameters
         ----------
@@ -48,7 +48,7 @@ class PinionFlank:
         return roll / helicoid.base_radius - helicoid.half_base_angle
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute points of the flank.
+        """Compute points of the flank in the pinion's body frame.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class PinionFlank:
         return stack_vectors(helicoid.side * across * np.cos(psi), helicoid.sine, -across * np.sin(psi))
 
     def tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the points.
+        """Compute the exact derivatives of `point`.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class PinionFlank:
         Returns
         -------
         tuple of (..., 3) arrays
-            Derivatives by roll and by y, dimensionless.
+            Derivatives by length of roll and by y, dimensionless.
         """
         psi, helicoid, roll = self.slope(u, v), self.helicoid, np.asarray(u, float)
         base, side = helicoid.base_radius, helicoid.side
@@ -128,7 +128,7 @@ class PinionFillet:
     lateral: float
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute points of the root.
+        """Compute points of the root in the pinion's body frame.
 
         Parameters
         ----------
@@ -168,7 +168,7 @@ class PinionFillet:
         return stack_vectors(x * c - up * s, along, x * s + up * c)
 
     def tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the points.
+        """Compute the exact derivatives of `point`.
 
         Parameters
         ----------
@@ -215,8 +215,9 @@ class PinionFillet:
         return tangents[0], tangents[1]
 
     def _contact(self, u: ArrayLike, v: ArrayLike) -> tuple[tuple[Array, Array, Array], Array, Array]:
-        """Return the direction (x, a, u) of the normal to the pitch line, the depth (m) of the rounding's
-        axis there, and the turn (rad) from that position of the rack to the body frame.
+        """Return three arrays for slopes u and places v: the components along (x, a, u) of the outward
+        normal, which meets the pitch line; the depth (m) of the rounding's axis below that line; and the
+        turn (rad) from that position of the rack to the body frame.
         """
         side, taper = self.helicoid.side, tan(self.taper)
         cotangent = 1.0 / np.tan(np.asarray(u, float))
@@ -230,21 +231,23 @@ class PinionFillet:
         return direction, depth, side * (pi / self.teeth) - rolled_angle
 
     def _turn_slope(self, cotangent: Array, depth: Array | float, centre: Array | float) -> Array:
-        """Return the change of the turn with changes of depth and of the centre's place along the axis."""
+        """Return the change of the turn (rad) with changes of depth and of the centre's place y, other
+        things equal.
+        """
         lateral = tan(self.helix) / cos(self.taper) * centre
         return -(lateral - self.helicoid.side * depth * cotangent) / self.helicoid.pitch_radius
 
 
 @lru_cache(maxsize=256)
 def pinion_fillet(family: ToothFamily, side: int) -> PinionFillet:
-    """Return the root beside a flank of the pinion.
+    """Return the root that the rack's rounded tip cuts beside a flank of the pinion.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
 
     Returns
     -------
@@ -267,7 +270,7 @@ def pinion_fillet(family: ToothFamily, side: int) -> PinionFillet:
 
 
 def tip_distance(helicoid: Helicoid, radius: ArrayLike, taper: float) -> Array:
-    """Compute the distance along a normal at which a helicoid reaches a tip cone.
+    """Compute the distance s from the base cylinder along a normal at which a helicoid reaches a tip cone.
 
     Parameters
     ----------
@@ -293,14 +296,14 @@ def tip_distance(helicoid: Helicoid, radius: ArrayLike, taper: float) -> Array:
 
 
 def pinion_start(family: ToothFamily, side: int, y: ArrayLike) -> Array:
-    """Compute where the pinion's involute begins: at its root.
+    """Compute where the pinion's involute begins: where the rack's tip rounding ends.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
     side : int
-        Sign of the flank.
+        Sign of the flank: +1 drive, -1 coast.
     y : (...) array_like
         Place along the axis, m.
 
@@ -317,7 +320,7 @@ def pinion_start(family: ToothFamily, side: int, y: ArrayLike) -> Array:
 
 
 def pinion_land(family: ToothFamily, y: ArrayLike) -> Array:
-    """Compute the width of the pinion's tip land.
+    """Compute the width of the pinion's tip land in a transverse section, chamfer not counted.
 
     Parameters
     ----------
@@ -357,7 +360,7 @@ def shaper_land(family: ToothFamily, y: ArrayLike) -> Array:
 
 
 def _land(flanks: tuple[Helicoid, Helicoid], radius: Array, y: ArrayLike) -> Array:
-    """Return the arc (m) between both flanks of a tooth at a radius."""
+    """Return the arc (m) between the drive and coast flank of a tooth at radii and places y (...), m."""
     angle = np.zeros(np.shape(radius))
     for helicoid in flanks:
         along = np.asarray(y, float) - helicoid.middle

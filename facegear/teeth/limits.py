@@ -28,7 +28,7 @@ class FaceRange:
     outer_reason: str
 
     def __str__(self) -> str:
-        """The range in mm, as a refusal tells it."""
+        """Return the range in mm with both reasons, as an error message tells it."""
         return (
             f"between {1e3 * self.inner:.3f} ({self.inner_reason}) and {1e3 * self.outer:.3f} "
             f"({self.outer_reason})"
@@ -45,7 +45,8 @@ class RadiusLimits:
 
 
 def radius_limits(design: PairDesign) -> RadiusLimits:
-    """Compute the limits of the face width for any shaper, addendum and pressure angle.
+    """Compute inner (undercut) and outer (pointing) radius of the face for any shaper, addendum and
+    pressure angle.
 
     Undercut: the singular line meets the end of the shaper's involute. Pointing: the two flanks meet on the
     tip plane.
@@ -69,7 +70,8 @@ def radius_limits(design: PairDesign) -> RadiusLimits:
 
 
 def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
-    """Compute where the teeth can be cut with a fillet and a tip land; neither radius of the face is needed.
+    """Compute between which radii teeth have a tip land and a fillet of THINNEST_LAND; the face's own
+    radii do not enter.
 
     Parameters
     ----------
@@ -109,7 +111,7 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
 
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:
-    """Return the error of a design whose face has no width."""
+    """Return, not raise, the error of a design whose face has no width; it names the gear's addendum."""
     tip = round(design.face_gear.addendum / design.module, 6)
     return GeometryError("face_gear.addendum_modules", tip, f"less: {reason}")
 
@@ -139,7 +141,9 @@ def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float
 
 
 def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
-    """Return the largest radius, m, at which a margin that falls outwards is still positive."""
+    """Return the largest radius in low .. high (m) at which a margin that falls outwards is still
+    positive, `low` if there is none.
+    """
     low, high = low * (1 + 1e-9), high * (1 - 1e-6)
     if high <= low or margin(design, low) <= 0:
         return low
@@ -149,7 +153,7 @@ def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low:
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
-    """Return the width (m) of the tip land beyond the thinnest allowed."""
+    """Return the width (m) of the tip land at a gear radius (m), less the thinnest allowed."""
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
 
@@ -174,8 +178,10 @@ def sharpest_fillet_radius(design: PairDesign) -> float:
 
 
 def _fillet_left(design: PairDesign, radius: float) -> float:
-    """Return the length (m) of the fillet beyond the shortest allowed: the way of the rounding's centre, and
-    its arc.
+    """Return the length (m) of the fillet at a gear radius (m), less the shortest allowed, THINNEST_LAND
+    modules.
+
+    The length is the way of the rounding's centre and its arc.
     """
     psi = float(face_gear_fillet.fillet_start(design, radius))
     way = abs(psi - atan(design.shaper_rounding_roll)) * design.shaper_rounding_centre
@@ -199,6 +205,7 @@ def undercut_radius(design: PairDesign) -> float:
     end = design.shaper_base_radius * roll
 
     def singularity(psi: float) -> float:
+        """Return the quadratic of `singular_quadratic` at the flank's end, m2/rad."""
         square, linear, constant = singular_quadratic(flank, psi)
         return float((square * end + linear) * end + constant)
 
@@ -227,15 +234,22 @@ def tip_plane_radius(design: PairDesign) -> float:
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
+    """Return the exact gear radius (m) at which both flanks meet on the tip plane, and the one by a
+    straight rack.
+    """
     space = design.shaper_half_space_angle
     height = (design.shaper_lift - design.gear_tip_plane) / design.shaper_base_radius
 
     def planar(psi: float) -> float:
+        """Return a measure (rad) of a straight rack's tooth at a slope psi (rad), negative if its tip has
+        a land.
+        """
         return psi - height * sin(psi) - space
 
     flank = gear_flank(design.family, -1)
 
     def exact(psi: float) -> float:
+        """Return x / y of the flank on the tip plane at a slope psi (rad), 0 where the tooth is pointed."""
         point = flank.point(psi, flank.growth_at_height(psi, design.gear_tip_plane)[0])
         return float(point[0] / point[1])
 
@@ -252,7 +266,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
 
 
 def _root_near(function: Callable[[float], float], guess: float) -> float:
-    """Return the root of a function near a guess.
+    """Return the root (rad) of a function near a guess (rad), by Brent's method in a bracket that grows.
 
     The guess is the planar limit, from which the exact one differs by some 0.03 %: a bracket grows around it.
     """

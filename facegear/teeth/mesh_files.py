@@ -59,7 +59,7 @@ FACES = {
 
 
 def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
-    """Return the element and its side of every face of a group.
+    """Return the element and its Abaqus side of every face of a group.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
     Returns
     -------
     list[tuple[int, str]]
-        Index of the element and side S1..S6.
+        Index of the element, from 0, and side S1..S6, in the order of `sector.faces(name)`.
 
     Raises
     ------
@@ -92,7 +92,7 @@ HEXAHEDRON_27, QUADRANGLE_9 = 12, 10
 
 @contextmanager
 def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
-    """Open a gmsh session that holds the sector.
+    """Open a gmsh session that holds the sector, for a `with` statement; it ends with the statement.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
 
 
 def _fill(sector: SectorMesh) -> NDArray[np.uint64]:
-    """Give nodes, elements and surfaces of a sector to gmsh, and return their numbers."""
+    """Give nodes, elements and named groups of faces of a sector to gmsh; return the tags of the elements."""
     names = [name for name in sector.tooth.faces if len(sector.faces(name))]
     for number in range(1, len(names) + 1):
         gmsh.model.addDiscreteEntity(2, number)
@@ -170,7 +170,7 @@ def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataF
     Returns
     -------
     pd.DataFrame
-        Rows of the body in quality.csv.
+        Rows of the body in quality.csv, see `quality_table`.
     """
     with atomic_path(msh) as temporary:
         condition = write_msh(sector, temporary)

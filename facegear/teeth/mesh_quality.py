@@ -16,7 +16,7 @@ TENSOR = (2 * ElementHex2.doflocs @ np.array([1, 3, 9])).astype(np.int64)
 
 
 def hex_mesh(nodes: Array, hexes: Integers) -> tuple[MeshHex2, Integers]:
-    """Build a mesh of hexahedra.
+    """Build scikit-fem's mesh of 27-node hexahedra.
 
     Displacement i of a node with the number k has the dof 3 k + i of `ElementVector(ElementHex2())`.
 
@@ -73,7 +73,7 @@ def scaled_jacobians(nodes: Array, hexes: Integers) -> Array:
 @cache
 def _slopes_at_nodes() -> Array:
     """Gradients (nodes, 3, functions) of the 27 shape functions of a hexahedron at its 27 nodes, both in
-    the order of scikit-fem, by coordinates from 0 to 1.
+    the order of scikit-fem, by the local coordinates x, y, z (axis 1) from 0 to 1.
     """
     element = ElementHex2()
     count = len(element.doflocs)
@@ -106,7 +106,7 @@ def require_right_side_out(tooth: FeTooth) -> None:
 
 
 def volume(nodes: Array, hexes: Integers) -> float:
-    """Compute the volume, exact for the 27-node geometry.
+    """Compute the volume of all elements by Gauss quadrature, exact for the 27-node geometry.
 
     Parameters
     ----------
@@ -126,6 +126,6 @@ def volume(nodes: Array, hexes: Integers) -> float:
 
 
 def _batches(mesh: MeshHex2) -> Iterator[Integers]:
-    """Yield the numbers of elements in batches of ELEMENTS_AT_ONCE."""
+    """Yield the indices of the mesh's elements in batches of at most ELEMENTS_AT_ONCE."""
     for start in range(0, mesh.nelements, ELEMENTS_AT_ONCE):
         yield np.arange(start, min(start + ELEMENTS_AT_ONCE, mesh.nelements))

@@ -52,14 +52,14 @@ THIN_COLUMN = 0.5
 
 
 def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
-    """Return sizes with the elements at the fillet that reading stress there needs, unless they are given.
+    """Return sizes with thin elements at the fillet, as root stress needs; given fillet sizes stay.
 
     Parameters
     ----------
     sizes : MeshSizes
         Element sizes.
     name : str
-        Name of the resolution; empty for other sizes.
+        Key of RESOLUTIONS from which the sizes came; empty for sizes that were given as lengths.
 
     Returns
     -------

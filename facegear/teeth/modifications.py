@@ -29,7 +29,7 @@ CUBIC = 3
 
 
 def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:
-    """Compute the material added along the normal.
+    """Interpolate the measured material along the outward normal at places of a flank, by a bicubic spline.
 
     The interpolation is of fourth order in the distance of the grid's places; fewer than four of them take
     a lower order.
@@ -59,7 +59,7 @@ def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -
 def derivative(
     grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike, orders: tuple[int, int]
 ) -> Array:
-    """Compute a derivative of `deviation`; 0 beyond an edge, where the value is constant.
+    """Compute a partial derivative of `deviation`; 0 beyond an edge, where the value is constant.
 
     Parameters
     ----------
@@ -92,7 +92,8 @@ def derivative(
 
 
 def mean_crowning(grid: DeviationGrid | None) -> float:
-    """Compute the curvature along the face of the parabola nearest to a grid's mean.
+    """Compute the curvature along the face of the least-squares parabola through a grid's means over the
+    profile.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def mean_crowning(grid: DeviationGrid | None) -> float:
     Returns
     -------
     float
-        1/m; 0 where the flank is hollow.
+        1/m, convex positive; 0 where the flank is hollow or has at most two places along the face.
     """
     if grid is None or len(grid.face) <= 2:
         return 0.0
@@ -112,13 +113,13 @@ def mean_crowning(grid: DeviationGrid | None) -> float:
 
 
 def _ends(line: tuple[float, ...]) -> tuple[float, float]:
-    """Return the first and the last value."""
+    """Return the first and the last of rising places (m)."""
     return line[0], line[-1]
 
 
 @lru_cache(maxsize=512)
 def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
-    """Return the spline through the deviations of a grid, m."""
+    """Return the bicubic spline of deviation (m) by place along face and profile (m); cached by grid."""
     lines = [np.array(line) for line in (grid.face, grid.profile)]
     orders = [min(CUBIC, line.size - 1) for line in lines]
     values = np.array(grid.deviation)
@@ -157,7 +158,7 @@ def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
 
 
 def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
-    """Compute the points where the flank ends at the fillet.
+    """Compute the points where the unmodified right flank ends at the fillet, in the gear's body frame.
 
     Parameters
     ----------
@@ -176,7 +177,7 @@ def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
-    """Compute the material that modifications and deviations take off along the normal.
+    """Compute the depth of material that modifications and deviations take off the gear along the normal.
 
     Tip relief is measured from the tip plane, root relief from where the flank ends, end relief from
     either end of the face, crownings from the middle of the face and from the pitch plane.
@@ -217,7 +218,7 @@ def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Ar
 
 
 def as_generated(design: PairDesign) -> bool:
-    """Whether the flank is the one that the shaper generates, with nothing taken off or added.
+    """Whether the gear's drive (left) flank is as the shaper generates it, with nothing taken off or added.
 
     Parameters
     ----------
@@ -303,14 +304,14 @@ def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Arr
 
 
 def added_curvatures(design: PairDesign, points: Array) -> tuple[Array, Array, Array]:
-    """Compute the curvatures that crownings and deviations add to the flank, convex positive.
+    """Compute the curvatures that crownings and deviations add to the gear's flank, convex positive.
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     points : (..., 3) array
-        Points of the flank, m.
+        Points of the flank in the gear's body frame, m.
 
     Returns
     -------
@@ -329,7 +330,7 @@ def added_curvatures(design: PairDesign, points: Array) -> tuple[Array, Array, A
 
 
 def gap_opening(design: PairDesign, points: Array, directions: Array) -> Array:
-    """Compute how much longer rays from the pinion become by modifications and deviations.
+    """Compute how much longer rays from the pinion become by the gear's modifications and deviations.
 
     It is of first order in the removed depth: 0.1 um off at 50 um compared with the exactly displaced
     flank.

@@ -39,9 +39,9 @@ class GearHits:
 class EdgeFeet:
     """Feet, on p pinion teeth, of the pinion normals through n points of the gear's tip edge, all (p, n).
 
-    gap (m), inf where there is none; lever_arm (m) of the normal about the pinion's axis; y (m). Either
-    `flank`, 0..1 in the square of the roll angle from tip to fillet, or `fillet`, the angle gamma (rad)
-    there, is not nan.
+    gap (m), negative inside the pinion, inf where there is none; lever_arm (m) of the normal about the
+    pinion's axis; y (m). Either `flank`, 0..1 in the square of the roll angle from tip to fillet, or
+    `fillet`, the angle gamma (rad) there, is not nan.
     """
 
     gap: Array
@@ -61,12 +61,12 @@ class FilletCurve:
 
     @cached_property
     def tree(self) -> cKDTree:
-        """The points for searches of the nearest."""
+        """k-d tree of `points` for searches of the nearest one."""
         return cKDTree(self.points)
 
 
 def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
-    """Return many points of the pinion's fillet between two angles gamma.
+    """Return FILLET_SAMPLES points of the pinion's fillet, evenly between two angles gamma.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
 
 
 def locate_hits(design: PairDesign, flank_separation: Separation) -> GearHits:
-    """Locate the ends of a separation on the gear's tooth.
+    """Express where normals of pinion points hit the gear's tooth as distances from the flank's tip edge.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def locate_hits(design: PairDesign, flank_separation: Separation) -> GearHits:
     Returns
     -------
     GearHits
-        Coordinates on the gear's tooth.
+        Coordinates on the gear's tooth, in the shape of the separation.
     """
     edge, last_roll = face_gear.tip_edge_by_radius(design), design.shaper_tip_roll
     flank, fillet, beyond = np.full((3, *flank_separation.gap.shape), np.nan)
@@ -138,7 +138,7 @@ def tip_edge_feet(
     placement : tuple of (p,) arrays
         phi1, phi2 (rad) and tooth.
     fillet : FilletCurve, optional
-        Fillet of the pinion.
+        Fillet of the pinion in its section; None leaves it out.
     search_radius : float
         Distance up to which the fillet is searched, m.
 
@@ -158,7 +158,8 @@ def tip_edge_feet(
 
 
 def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
-    """Find the feet of the involute's normals through points (..., 3).
+    """Find the feet on the pinion's involute of its normals through points (..., 3), m: x, -z, y of its
+    section.
 
     All normals touch the base circle, so that the distance along them is that of two parallel involutes.
     """
@@ -184,7 +185,11 @@ def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
 def _fillet_feet(
     design: PairDesign, section: Array, fillet: FilletCurve, search_radius: float
 ) -> tuple[Array, Array, Array]:
-    """Gap (inf: none), gamma and lever arm at the nearest of many points of the fillet, its ends left out."""
+    """Return gap (m, inf without foot), gamma (rad) and lever arm (m), (n,) each, of points (n, 3), x,
+    -z, y in m.
+
+    The foot is the nearest of the curve's points, its ends left out; the gap is taken along the normal there.
+    """
     curve, normal = fillet.points, fillet.normals
     gap, gamma, lever_arm = (np.full(len(section), value) for value in (np.inf, np.nan, 0.0))
     low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius

@@ -15,7 +15,7 @@ from facegear.teeth.modifications import deviation
 
 
 def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
-    """Compute points of the involute.
+    """Compute points of the right flank's involute in polar coordinates of the section.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
 
 
 def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
-    """Compute outward unit normals of the involute.
+    """Compute unit normals of the right flank's involute, out of the tooth.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def junction_roll(design: PairDesign) -> float:
 
 
 def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
-    """Compute points of the root trochoid.
+    """Compute points of the root trochoid of the right side in polar coordinates of the section.
 
     gamma runs from the pressure angle (the junction with the involute) to pi/2 (the root circle).
 
@@ -91,7 +91,7 @@ def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
 
 
 def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
-    """Compute outward unit normals of the root trochoid.
+    """Compute unit normals of the root trochoid of the right side, out of the material.
 
     Parameters
     ----------
@@ -110,17 +110,17 @@ def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]
 
 
 def _flank(design: PairDesign) -> PinionFlank:
-    """Return the right flank as a member of the family of all teeth."""
+    """Return the pinion's right (drive) flank as a surface of `helicoid`."""
     return PinionFlank(design.family.pinion_flanks[0])
 
 
 def _polar(points: Array) -> tuple[Array, Array]:
-    """Return radius (m) and polar angle (rad) from the tooth's centre line."""
+    """Return radius (m) and polar angle (rad) from the tooth's centre line of body-frame points (..., 3)."""
     return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
 
 
 def tip_half_angle(design: PairDesign) -> float:
-    """Compute half the angle of the tip land, chamfer taken off.
+    """Compute half the angle of the tip land about the axis, chamfer taken off.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def tip_half_angle(design: PairDesign) -> float:
 
 
 def root_half_angle(design: PairDesign) -> float:
-    """Compute half the angle of the root land.
+    """Compute half the angle of the root land about the axis.
 
     Parameters
     ----------
@@ -175,7 +175,8 @@ def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
 
 
 def removed_depth(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
-    """Compute the material that modifications and deviations take off along the normal.
+    """Compute the depth of material that modifications and deviations take off the right flank along the
+    normal.
 
     Beyond the ends of the involute (in the fillet) the root relief keeps its full amount, and the
     deviation keeps its value at the end.
@@ -221,7 +222,8 @@ def distances(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, 
     Returns
     -------
     tuple of (...) arrays
-        Distances for tip relief, root relief and lead crowning, m.
+        Length of roll below the tip, length of roll above the root's junction, and distance from the
+        middle of the face, m.
     """
     base = design.pinion_base_radius
     return (
@@ -232,7 +234,7 @@ def distances(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, 
 
 
 def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-    """Compute the coordinates of `DeviationGrid`.
+    """Compute where a point of the flank is in the coordinates of the pinion's `DeviationGrid`.
 
     Parameters
     ----------
@@ -246,7 +248,7 @@ def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[
     Returns
     -------
     tuple of (...) arrays
-        Distances along face and profile, m.
+        Distance along the face from its middle, and length of roll within the involute's ends, m.
     """
     on_flank = np.clip(np.asarray(roll, float), junction_roll(design), design.pinion_tip_roll)
     return np.asarray(y, float) - design.mean_radius, design.pinion_base_radius * on_flank

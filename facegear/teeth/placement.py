@@ -22,7 +22,7 @@ AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -
 
 
 def body_rotation(body: str, angle: ArrayLike) -> Array:
-    """Return rotation matrices of the pinion or the face gear.
+    """Return rotation matrices of a body about its axis, positive where its teeth in mesh move towards +x.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: 
     phi2 : (...) array_like
         Gear angle, rad.
     tooth : (...) array_like
-        Number of both teeth, dimensionless.
+        Number of the pinion's and of the gear's tooth, dimensionless.
 
     Returns
     -------
@@ -294,7 +294,7 @@ FLANKS = ("drive", "back")
 
 
 def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:
-    """Return the errors at a flank, as those of a drive flank.
+    """Return the errors that one flank of a gear meets, in the signs of an upper gear's drive flank.
 
     Parameters
     ----------
@@ -334,14 +334,14 @@ def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
     Returns
     -------
     PairDesign
-        The pair.
+        The pair with errors by `errors_at`, and with swapped deviations for a back flank.
     """
     drive_design = design if flank == "drive" else design.with_swapped_flanks
     return replace(drive_design, assembly=errors_at(design.assembly, gear, flank))
 
 
 def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
-    """Return the different pairs of all flanks, the design first.
+    """Return the pairs of both gears' both flanks without repetitions, so that each is computed once.
 
     Parameters
     ----------
@@ -351,7 +351,7 @@ def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
     Returns
     -------
     tuple
-        The pairs, and the number of each flank's pair, (gears, flanks).
+        The pairs, the design first, and the index of each flank's pair in them, (2, 2) by GEARS and FLANKS.
     """
     pairs = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(pairs))

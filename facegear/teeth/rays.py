@@ -20,7 +20,13 @@ SAMPLES = 25
 
 
 class Blank(NamedTuple):
-    """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`)."""
+    """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`).
+
+    base, ratio, space, lift: see `face_gear.shaper_numbers`; tip_centre, tip_rounding, edge_start: see
+    `face_gear_fillet.tip_numbers`; tip_roll: where the shaper's involute ends (rad); inner, outer: radii
+    of the face (m); tip_plane, root_plane: heights z (m); root_start: gear angle from the tooth's middle
+    at which the root land begins (rad); pitch: angular pitch (rad).
+    """
 
     base: float
     ratio: float
@@ -45,7 +51,7 @@ class Blank(NamedTuple):
 
 
 def blank(design: PairDesign) -> Blank:
-    """Return the numbers of a design's face gear that limit its flank: radii, planes and edges.
+    """Return the numbers of a design's face gear that the kernel of rays takes: shaper, radii, planes, edges.
 
     Parameters
     ----------
@@ -117,12 +123,14 @@ def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
 
 @lru_cache(maxsize=16)
 def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
-    """Return blank and sampled flank of a design's generated teeth; kept for each design."""
+    """Return blank and sampled flank of a design without modifications and errors; cached by design."""
     return blank(design), _flank_sample(design)
 
 
 def _flank_sample(design: PairDesign) -> FlankSample:
-    """Sample the flank on a grid from which searches along rays begin."""
+    """Sample the right flank on SAMPLES x SAMPLES points, gear radius by roll, from which searches along
+    rays begin.
+    """
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
@@ -150,7 +158,7 @@ NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 def cut(
     blank: Blank, sample: FlankSample, starts: Array, ways: Array, search_radius: float
 ) -> tuple[list[AnyArray], int]:
-    """Find where rays meet the face gear by Newton's method.
+    """Find the first surface of tooth 0 of the face gear that each ray meets, by Newton's method.
 
     Parameters
     ----------

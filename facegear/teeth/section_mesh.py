@@ -20,7 +20,10 @@ from facegear.teeth.section_outline import Outline
 
 @dataclass(frozen=True)
 class ElementRow:
-    """A row of the strip between depths t0 and t1; `level` of its outer side, coarsening inwards or not."""
+    """A row of the strip between depths t0 and t1 (0 at the surface, 1 at the centre line).
+
+    level: its outer side has 3^level elements a coarse column; coarsens: its inner side has a third of them.
+    """
 
     t0: float
     t1: float
@@ -30,7 +33,9 @@ class ElementRow:
 
 @dataclass(frozen=True)
 class HalfSection:
-    """Quads of nine nodes in (sigma, t), lexicographic with sigma first; nodes unique."""
+    """Right half of a tooth section: sigma and t (nodes,) of unique nodes, and quads (n, 9), sigma
+    fastest.
+    """
 
     sigma: Array
     t: Array
@@ -42,7 +47,7 @@ class HalfSection:
 def depth_rows(
     profile: float, thickness: float, depth: float, levels: int, second: float | None = None
 ) -> list[ElementRow]:
-    """Return the rows from the surface to the centre line for a reference depth; all lengths in one unit.
+    """Return the rows from the surface to the centre line for a tooth whose half is `depth` deep.
 
     A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
     rows over what is left. So a smaller `thickness` never makes the first row deeper. A row `second` deep
@@ -85,7 +90,8 @@ def depth_rows(
 
 
 def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
-    """Return as many three-to-one steps as the inner size needs and three quarters of the depth can hold.
+    """Return as many three-to-one coarsening steps as reach the inner size and fit three quarters of the
+    depth.
 
     Parameters
     ----------
@@ -111,14 +117,14 @@ def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
 
 
 def _coarsening_depth(profile: float, levels: int) -> float:
-    """Return the depth, m, that coarsening three to one over some levels takes."""
+    """Return the depth that so many three-to-one levels take, in the unit of `profile`."""
     return sum(2.5 * profile * 3.0**step for step in range(levels))
 
 
 def half_section(
     rows: list[ElementRow], column_levels: list[int], columns: tuple[int, int], block: int
 ) -> HalfSection:
-    """Build the quads of the strip and of the rows below it.
+    """Build nodes and quads of half a section in (sigma, t) from rows and columns; no geometry enters.
 
     Columns of different levels conform, as no row's sides are divided.
 
@@ -136,7 +142,7 @@ def half_section(
     Returns
     -------
     HalfSection
-        Topology of the half section.
+        Nodes in (sigma, t) and quads.
     """
     corners: list[Array] = []
     for column, finest in enumerate(column_levels):
@@ -150,7 +156,7 @@ def half_section(
 
 
 def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
-    """Return the corners (4, 2) of a rectangle in local coordinates."""
+    """Return the corners (4, 2) of a rectangle in (sigma, t), sigma fastest."""
     return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
 
 
@@ -179,7 +185,7 @@ def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[A
 
 
 def _nine_nodes(corners: Array, columns: tuple[int, int]) -> HalfSection:
-    """Return nine-node quadrilaterals of corner points, with shared nodes merged."""
+    """Return nine-node quads of corners (n, 4, 2) in (sigma, t): mid nodes added, equal nodes merged."""
     c00, c10, c01, c11 = (corners[:, i] for i in range(4))
     nine = np.stack(
         [
@@ -213,9 +219,11 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class SectionPlan:
-    """Start and end in sigma of each segment of the outline, and the topology.
+    """Start and end in sigma of each segment of the outline, and the topology in (sigma, t).
 
-    rows: depth t at which the first rows end, (n,); fillet_rows: those below the fillet, (n,).
+    breaks: by segment (`chamfer`, `flank`, `fillet_upper`, `fillet_lower`, `root_land`); half: nodes and
+    quads; floor_height: of the strip's floor, m; rows: depth t at which the first rows end, (n,);
+    fillet_rows: those below the fillet, (n,).
     """
 
     breaks: dict[str, tuple[float, float]]
@@ -238,7 +246,7 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     Returns
     -------
     SectionPlan
-        Topology of the section.
+        Nodes and quads in (sigma, t), ends of the outline's segments and depths of rows.
     """
     scale = outline.tip_height if outline.body == "pinion" else float(np.mean(outline.planes))
     lengths = {name: _length(outline, name, scale) for name in ("flank", "fillet", "root_land")}
@@ -298,7 +306,7 @@ def first_row(outline: Outline, sizes: MeshSizes) -> float:
     Returns
     -------
     float
-        m; inf if no depth is given.
+        m; inf if `sizes.fillet_depth` is None.
     """
     depth_limit = sizes.fillet_depth
     if depth_limit is None:
@@ -309,19 +317,23 @@ def first_row(outline: Outline, sizes: MeshSizes) -> float:
 
 
 def _fillet_rows(rows: Array, first: float) -> Array:
-    """Depth t at which rows end that begin with `first` and grow by GROWTH, but no deeper than `rows`."""
+    """Return depths t (n,) at which rows end: the first is `first` deep, each next GROWTH times as deep
+    as the one before, none ends deeper than in `rows` (n,).
+    """
     sizes = first * GROWTH ** np.arange(rows.size)
     return np.minimum(rows, np.cumsum(sizes))
 
 
 def _floor_height(outline: Outline) -> float:
-    """Return the height at which the mesh below the root becomes plain, m."""
+    """Return the height (m, as of the outline) of the strip's floor, below which rows are plain."""
     below = outline.root_height - outline.back_height
     return outline.root_height - min(0.6 * outline.design.module, 0.5 * below)
 
 
 def _length(outline: Outline, segment: str, scale: float) -> float:
-    """Return the largest length of an outline's segment over the sections, m."""
+    """Return the largest length (m) of a segment over the planes; angles become lengths at the radius
+    `scale` (m).
+    """
     angle, height = outline.points(segment, np.linspace(0, 1, 65))
     return float(np.max(np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0)).sum(axis=0)))
 
@@ -356,12 +368,12 @@ def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[Mask, 
 
 
 def _nearest(values: Array, value: float) -> float:
-    """Return the value that is nearest to a given one."""
+    """Return the element of `values` (n,) that is nearest to `value`."""
     return float(values[np.argmin(np.abs(values - value))])
 
 
 def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
-    """Compute the nodes of the right half.
+    """Compute where the plan's nodes stand in every plane: the right half of the tooth section.
 
     Parameters
     ----------
@@ -373,7 +385,7 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
     Returns
     -------
     tuple of (nodes, planes) arrays
-        Angle, rad, and height, m.
+        Angle from the tooth's centre line, rad, and height as of `Outline`, m.
     """
     half = plan.half
     sigma, index = np.unique(half.sigma, return_inverse=True)
@@ -395,7 +407,7 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
 
 
 def _depth(plan: SectionPlan, sigma: Array) -> Array:
-    """Depth (nodes,) of the half section's nodes at sigma, the first rows thinner below the fillet.
+    """Return the depth t (nodes,) of nodes at sigma (nodes,), the first rows thinner below the fillet.
 
     They become so over the last whole column of the flank: rows that coarsen stay in shape within a column.
     """
@@ -407,7 +419,9 @@ def _depth(plan: SectionPlan, sigma: Array) -> Array:
 
 
 def _straighten(half: HalfSection, values: Array) -> None:
-    """Put mid nodes off the surface halfway between their ends, whatever the outline does in between."""
+    """Put mid nodes off the surface halfway between their ends, whatever the outline does; in place in
+    `values` (nodes, planes).
+    """
     quads = half.quads
     for middle, first, last in ((1, 0, 2), (3, 0, 6), (5, 2, 8), (7, 6, 8)):
         edges = quads[half.t[quads[:, middle]] > 0]
@@ -417,7 +431,9 @@ def _straighten(half: HalfSection, values: Array) -> None:
 
 
 def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array) -> tuple[Array, Array]:
-    """The strip's inner edge: down the centre line, then along the floor to the cut."""
+    """Return angle (n,), rad, and height (n, planes), m, of the strip's inner edge at sigma (n,): down
+    the centre line, then along the floor to the cut.
+    """
     wall, floor_columns = plan.half.columns
     junction = plan.breaks["flank"][1]
     _, end_of_flank = outline.points("flank", np.ones(1))

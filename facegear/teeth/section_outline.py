@@ -18,7 +18,8 @@ from facegear.teeth.design import PairDesign
 class Outline:
     """Points of an outline segment by segment, for every plane of the width.
 
-    At fractions 0..1 of each segment: angle and height, of flank and fillet the surface parameters as well.
+    At fractions 0..1 of each segment, from tip to root: angle (rad, from the tooth's centre line) and height
+    (m), of flank and fillet the surface parameters as well. body: `pinion` or `face_gear`.
     """
 
     design: PairDesign
@@ -53,7 +54,7 @@ class Outline:
         return self.body == "pinion" and self.design.pinion.tip_chamfer > 0
 
     def flank_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Compute the surface parameters of the flank.
+        """Compute the parameters of the exact flank, evenly in roll (pinion: its square) from tip to fillet.
 
         Parameters
         ----------
@@ -76,7 +77,7 @@ class Outline:
         return roll, face_gear.psi_at(self.design, radius, roll)
 
     def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Compute the surface parameters of the fillet.
+        """Compute the parameters of the exact fillet, evenly along its length in the middle plane.
 
         Parameters
         ----------
@@ -98,7 +99,9 @@ class Outline:
         return _has_same_sections(slopes, self.planes[None, :])
 
     def _even(self, fraction: Array) -> Array:
-        """Fractions of the fillet's parameter that are evenly spaced along it (in the middle plane)."""
+        """Return fractions (n,) of the fillet's parameter at fractions (n,) of its length in the middle
+        plane.
+        """
         grid = np.linspace(0, 1, 401)
         if self.body == "pinion":
             start = self.design.pressure_angle
@@ -113,7 +116,7 @@ class Outline:
         return np.interp(fraction, length / length[-1], grid)
 
     def points(self, segment: str, fraction: Array) -> tuple[Array, Array]:
-        """Compute points of a segment.
+        """Compute points of a segment of the right half tooth's outline.
 
         Parameters
         ----------
@@ -146,7 +149,9 @@ class Outline:
         return tip + fraction * (angle - tip), self.tip_height + fraction * (height - self.tip_height)
 
     def _flank(self, fraction: Array) -> tuple[Array, Array]:
-        """Return angle, rad, and height, m, of flank points at fractions of the profile."""
+        """Return angle (rad) and height (m), (n, planes), of flank points at fractions (n,) from tip to
+        fillet.
+        """
         u, v = self.flank_parameters(fraction)
         if self.body == "pinion":
             radius, angle = pinion.involute_point(self.design, u)
@@ -155,7 +160,7 @@ class Outline:
         return np.arctan2(point[..., 0], point[..., 1]), point[..., 2]
 
     def cartesian(self, angle: Array, height: Array) -> Array:
-        """Convert points to the body frame.
+        """Convert angle and height of the planes to points of the body frame.
 
         Parameters
         ----------
@@ -175,7 +180,7 @@ class Outline:
 
 
 def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
-    """Return both arrays at their common broadcast shape."""
+    """Return both arrays broadcast to their common shape."""
     u, v = np.broadcast_arrays(u, v)
     return u, v
 
@@ -185,7 +190,7 @@ PLANES, POINTS = 8, 129
 
 
 def tooth_fill(design: PairDesign) -> tuple[float, float]:
-    """Compute how much of the ring between their root land, tip plane and ends the teeth fill.
+    """Compute how much of the ring between root land, tip plane and ends the face gear's teeth fill.
 
     Parameters
     ----------

@@ -33,7 +33,8 @@ RAYS_AT_ONCE = 60_000
 
 @dataclass(frozen=True)
 class Separation:
-    """For p placements and n pinion points, all (p, n), or (n,) of points in one placement each.
+    """Where normals of pinion points meet the gear: p placements and n points, all (p, n), or (n,) of
+    points in one placement each.
 
     gap (m), the gear part hit (see PARTS), where on it.
 
@@ -60,8 +61,8 @@ def separation(
     tooth: ArrayLike = 0,
     search_radius: float | None = None,
 ) -> Separation:
-    """Compute the separation of the right side of a pinion tooth from the left side of the gear tooth of that
-    number.
+    """Compute the signed distance along the pinion's normals from the right side of a pinion tooth to the
+    left side of the gear tooth of that number.
 
     Angles and tooth broadcast to p placements. Assembly errors are the design's.
 
@@ -83,7 +84,7 @@ def separation(
     Returns
     -------
     Separation
-        Gaps (p, n), m.
+        Gaps (p, n), m, positive where there is room, with the gear's part and place that is hit.
 
     Raises
     ------
@@ -114,7 +115,7 @@ def separation_each(
     search_radius: float,
     number: Integers | None = None,
 ) -> Separation:
-    """Compute the separation of points that each have one of p placements only.
+    """Compute `separation` for points that each have one of p placements only.
 
     Parameters
     ----------
@@ -134,7 +135,7 @@ def separation_each(
     Returns
     -------
     Separation
-        Gaps (n,), m.
+        Gaps (n,), m, with the gear's part and place that is hit.
 
     Raises
     ------
@@ -148,7 +149,10 @@ def separation_each(
 
 
 def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Array]:
-    """Points (n, 3) in each of p motions, or (p, n, 3) each in its own: points and directions (p n, 3)."""
+    """Return starts (m) and unit directions of rays, (p n, 3) each, the placement counting slowest.
+
+    They are the points and normals (n, 3) in each of p motions, or (p, n, 3) each in its own.
+    """
     placements, (*placement_shape, count, _) = len(motion.shift), points.position.shape
     at, number = np.repeat(np.arange(placements), count), np.arange(placements * count)
     number = number if placement_shape else number - count * at
@@ -156,7 +160,10 @@ def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Arr
 
 
 def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Integers) -> tuple[Array, Array]:
-    """Rays (n, 3) from those of `points` (m, 3) that `number` (n,) says, each in motion `at` (n,)."""
+    """Return starts (m) and unit directions of rays, (n, 3) each, in the frame that `motion` leads to.
+
+    Ray i is point and normal `number[i]` of `points` (m, 3), moved by motion `at[i]`.
+    """
     starts, ways = np.empty((2, at.size, 3))
     flanks.place(motion.matrix, motion.shift, at, number, points.position, points.normal, starts, ways)
     return starts, ways
@@ -164,7 +171,7 @@ def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Inte
 
 @dataclass(frozen=True, eq=False)
 class GearSide:
-    """The side of a design's gear that rays are cut with: as generated, or with modifications."""
+    """The left side of a design's gear tooth 0 (mirrored, see `to_left_flank`), with which rays are cut."""
 
     design: PairDesign
     blank: Blank
@@ -173,7 +180,7 @@ class GearSide:
 
     @classmethod
     def of_design(cls, design: PairDesign) -> Self:
-        """Return the side that meets the pinion's right flank.
+        """Return the side of the design's gear that meets the pinion's right flank, with its modifications.
 
         Parameters
         ----------
@@ -188,21 +195,21 @@ class GearSide:
         return cls(design, *gear_rays(design), as_generated(design))
 
     def cut(self, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
-        """Find where rays, in the frame of the gear's flank, meet the gear.
+        """Find where rays, in the frame of the gear's flank, first meet the gear.
 
         Parameters
         ----------
         starts : (n, 3) array
             Starts of the rays, m.
         ways : (n, 3) array
-            Unit vectors, dimensionless.
+            Directions of the rays, unit vectors, dimensionless.
         search_radius : float
             Distance up to which surfaces are searched, m.
 
         Returns
         -------
         list of (n,) arrays
-            Fields of `Separation`, in SI units.
+            Fields of `Separation` in their order: gap, part, u, v, continued, radius, in SI units.
 
         Raises
         ------
@@ -219,8 +226,8 @@ class GearSide:
         return hit
 
     def _gap_opening(self, starts: Array, ways: Array, length: Array, is_counted: Mask | bool) -> Array:
-        """Return how much longer rays of a length (n,) become by the gear's modifications, where
-        these count.
+        """Return how much longer (m) rays (n, 3) of lengths (n,), m, become by the gear's modifications
+        and deviations; 0 where the mask says that these do not count, or a length is infinite.
         """
         length = np.where(is_counted, length, np.inf)
         with np.errstate(invalid="ignore"):

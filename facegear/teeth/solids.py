@@ -56,7 +56,7 @@ def solid(
     Returns
     -------
     list of (profile, width, 3) arrays
-        Points, m.
+        Points in the body frame, m, normals outwards.
     """
     whole = teeth_of(design, body)
     count = whole if teeth is None else teeth
@@ -70,8 +70,8 @@ def solid(
 
 
 def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
-    """Return the right half of a tooth, and the mirrored left half, which the mirrored pair's right flank
-    touches.
+    """Return the right half of a tooth, and the left half seen in a mirror x -> -x, with its own
+    deviations.
     """
     if body == "pinion":
         return _pinion_half(design, profile, width), _pinion_half(design.with_swapped_flanks, profile, width)
@@ -107,7 +107,7 @@ def numbers(count: int) -> range:
     Returns
     -------
     range
-        Numbers of the teeth.
+        Numbers of the teeth, such as -1, 0, 1 for three.
     """
     return range(-(count // 2), count - count // 2)
 
@@ -149,7 +149,7 @@ def mirror_patch(patch: Array) -> Array:
 
 
 def _sides(half: HalfTooth) -> list[Array]:
-    """Return the patches of half a tooth: surface, base and both ends, normals outwards."""
+    """Return the patches of half a tooth with normals outwards: for each part surface, base and both ends."""
     patches = []
     for surface, base in zip(half.surface, half.base, strict=True):
         first, last = (np.stack([surface[:, k], base[:, k]], axis=1) for k in (0, -1))
@@ -158,13 +158,15 @@ def _sides(half: HalfTooth) -> list[Array]:
 
 
 def _cut(half: HalfTooth) -> Array:
-    """Return the plane through the middle of the tooth space on the right, normal outwards."""
+    """Return the patch (2, width, 3) through the middle of the tooth space on the right, normal outwards."""
     cut = np.stack([half.surface[-1][-1], half.base[-1][-1]], axis=1)
     return cut[::-1] if half.normal_sign > 0 else cut
 
 
 def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
-    """Return the patches of half a pinion tooth: flank, fillet, lands and bore."""
+    """Return the right half of a pinion tooth: land, chamfer, flank, fillet, root land, and their base at
+    the bore.
+    """
     part, few = design.pinion, (profile - 1) // 4 + 1
     y = np.linspace(design.mean_radius - part.width / 2, design.mean_radius + part.width / 2, width)[None, :]
     bounds = _roll_bounds(design)
@@ -187,10 +189,13 @@ def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
 
 
 def _roll_bounds(design: PairDesign) -> list[float]:
-    """Return the roll angles (rad), from tip to fillet, between which the flank is smooth."""
+    """Return the roll angles (rad), from tip to fillet, between which the pinion's flank has no kink by
+    reliefs.
+    """
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
 
     def kinks(relief: Relief) -> list[float]:
+        """Return where a relief begins and ends, as roll angles (rad) from its end of the flank."""
         lengths = [relief.start, relief.start + relief.length] if relief.amount else []
         return [length / design.pinion_base_radius for length in lengths]
 
@@ -214,7 +219,7 @@ def _arc(start: Array, end: Array, count: int) -> Array:
 
 
 def _between(start: Array, end: Array, count: int) -> Array:
-    """Return grids of points on straight lines from `start` to `end`."""
+    """Return points (count, n, 3) on straight lines from `start` to `end`, (n, 3) each, m."""
     fraction = np.linspace(0.0, 1.0, count)[:, None, None]
     points = start + fraction * (end - start)
     points[-1] = end
@@ -222,13 +227,15 @@ def _between(start: Array, end: Array, count: int) -> Array:
 
 
 def _onto_bore(points: Array, bore: float) -> Array:
-    """Project points onto the pinion's bore."""
+    """Project points (..., 3), m, radially onto a cylinder of radius `bore` (m) about the pinion's axis."""
     _, angle = _polar(points)
     return pinion.cartesian(bore, angle, points[..., 1])
 
 
 def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
-    """Return the patches of half a gear tooth: flank, fillet, lands and back."""
+    """Return the right half of a gear tooth: land, flank, fillet, root land, and their base on the back
+    plane.
+    """
     gear, few = design.face_gear, (profile - 1) // 4 + 1
     radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
     fraction = np.linspace(0.0, 1.0, profile)[:, None]

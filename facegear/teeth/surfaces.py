@@ -47,13 +47,15 @@ class SurfacePoints:
 
     @property
     def lever_arm(self) -> Array:
-        """Lever arm (m) of the normals about the pinion's axis: speed along the normal per rotation."""
+        """Lever arm (...), m, of the normals about the pinion's axis: way along the normal per positive
+        rotation.
+        """
         x, z = self.position[..., 0], self.position[..., 2]
         return x * self.normal[..., 2] - z * self.normal[..., 0]
 
 
 def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePoints:
-    """Compute points of the involute; roll and y are broadcast together.
+    """Compute points of the right flank as made, modifications included; roll and y are broadcast together.
 
     Modifications move points along the unmodified normal; the normal's own change (1e-3 rad) is left out.
 
@@ -79,7 +81,7 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
 
 
 def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:
-    """Compute points of the trochoid; gamma and y are broadcast together.
+    """Compute points of the right root as made: the trochoid less what is taken off at the flank's end.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ class Face:
 
 
 def flank_face(design: PairDesign, body: Body) -> Face:
-    """Return the flank of a body; the flank of the gear is as deep as at its deepest end.
+    """Return the extent of a body's flank; the gear's counts as deep everywhere as at its deepest end.
 
     Parameters
     ----------
@@ -161,7 +163,7 @@ def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[
     Returns
     -------
     tuple of (n, m, 3) arrays
-        Points, m, and normals.
+        Points, m, and normals out of the tooth, in the order of `along` and `across`.
 
     Raises
     ------

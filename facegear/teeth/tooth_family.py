@@ -27,7 +27,7 @@ SIDES = (1, -1)
 
 
 class ToothSurface(Protocol):
-    """A part of a tooth, in the body frame of its gear, by two parameters (u, v)."""
+    """A part of a tooth, in the body frame of its gear, by two parameters (u, v) that each class names."""
 
     def point(self, u: ArrayLike, v: ArrayLike) -> Array:
         """Compute points of the surface.
@@ -46,7 +46,7 @@ class ToothSurface(Protocol):
         """
 
     def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Compute outward unit normals of the surface.
+        """Compute unit normals of the surface, pointing out of the tooth.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class ToothSurface(Protocol):
         """
 
     def tangents(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-        """Compute the derivatives of the points.
+        """Compute the exact derivatives of `point` by its two parameters.
 
         Parameters
         ----------
@@ -98,12 +98,12 @@ class Rack:
         return self.normal_module / cos(self.helix_angle)
 
     def pressure_angle(self, side: int) -> float:
-        """Return the normal pressure angle of a flank.
+        """Return the normal pressure angle of the flank of a sign.
 
         Parameters
         ----------
         side : int
-            Sign of the flank.
+            Sign of the flank: +1 drive, -1 coast.
 
         Returns
         -------
@@ -137,7 +137,9 @@ class RelativeMotion:
 
     @cached_property
     def basis(self) -> Array:
-        """Rows x, a and u (3, 3): components of the pinion's frame become those of the mesh frame."""
+        """Rotation (3, 3) with rows x, a, u: components (..., 3) along these, times it, are in the mesh
+        frame.
+        """
         return np.array([[1.0, 0.0, 0.0], [0.0, self.sine, -self.cosine], [0.0, self.cosine, self.sine]])
 
 
@@ -160,7 +162,7 @@ class Helicoid:
 
     @cached_property
     def cosine(self) -> float:
-        """Cosine C of the base helix."""
+        """Cosine C of the base helix angle, whose sine is `sine`."""
         return sqrt(1.0 - self.sine**2)
 
     @cached_property
@@ -200,7 +202,7 @@ class ToothFamily:
 
     @cached_property
     def motion(self) -> RelativeMotion:
-        """Motion of the pinion against the gear."""
+        """Motion of the pinion against the gear: ratio N1 / N2, shaft angle and offset."""
         return RelativeMotion(self.pinion_teeth / self.gear_teeth, self.shaft_angle, self.offset)
 
     @cached_property
@@ -225,12 +227,12 @@ class ToothFamily:
 
     @cached_property
     def lift(self) -> float:
-        """Height of the shaper's axis above the pinion's along u, m."""
+        """Height of the shaper's axis above the pinion's along u, m; 0 with equal tooth numbers."""
         return self.shaper_pitch_radius - self.pinion_pitch_radius
 
     @cached_property
     def taper(self) -> float:
-        """Growth of the profile shift per length of face."""
+        """Growth of the profile shift per length of face, tan(taper angle), dimensionless."""
         return tan(self.rack.taper_angle)
 
     @cached_property
@@ -255,12 +257,12 @@ class ToothFamily:
 
     @cached_property
     def gear_tip(self) -> "Meridian":
-        """Tip surface of the gear."""
+        """Meridian of the gear's tip surface, a cone or plane about its axis."""
         depth = self.pinion_pitch_radius + self.profile_shift - self.gear_addendum
         return Meridian(self.motion, depth, self.taper, self.middle)
 
     def shift(self, y: ArrayLike) -> Array:
-        """Return the profile shift of a section.
+        """Return the profile shift of the pinion's transverse section at a place.
 
         Parameters
         ----------
@@ -276,7 +278,7 @@ class ToothFamily:
 
     @cached_property
     def pinion_flanks(self) -> tuple[Helicoid, Helicoid]:
-        """Drive and coast flank of the pinion."""
+        """Drive and coast flank of the pinion, thinning included."""
         first, second = (_helicoid(self, side, self.pinion_teeth, self.thinning) for side in SIDES)
         return first, second
 
@@ -317,7 +319,7 @@ class Meridian:
     middle: float
 
     def y_at(self, radius: ArrayLike) -> Array:
-        """Return the place along the pinion's axis at a gear radius.
+        """Return where along the pinion's axis the meridian has a gear radius.
 
         Parameters
         ----------
@@ -334,7 +336,7 @@ class Meridian:
         return (np.asarray(radius, float) + start * cosine) / (sine - self.taper * cosine)
 
     def height(self, radius: ArrayLike) -> Array:
-        """Return the height z at a gear radius.
+        """Return the meridian's height z in the mesh frame at a gear radius.
 
         Parameters
         ----------
@@ -358,6 +360,7 @@ class Meridian:
 
 
 def _helicoid(family: ToothFamily, side: int, teeth: int, thinning: float) -> Helicoid:
+    """Return a flank of a pinion or shaper by the rack, half of the thinning (m) taken off."""
     rack, helix, taper = family.rack, family.rack.helix_angle, family.rack.taper_angle
     angle, module = rack.pressure_angle(side), rack.transverse_module
     pitch_radius = teeth * module / 2
@@ -371,14 +374,14 @@ def _helicoid(family: ToothFamily, side: int, teeth: int, thinning: float) -> He
 
 
 def turn_about_axis(turn: ArrayLike, vectors: Array) -> Array:
-    """Turn vectors about the gear's axis.
+    """Turn vectors about the gear's axis, right-handed about +z.
 
     Parameters
     ----------
     turn : (...) array_like
         Angle about +z, rad.
     vectors : (..., 3) array
-        Any unit.
+        Components x, y, z, any unit.
 
     Returns
     -------
@@ -391,7 +394,7 @@ def turn_about_axis(turn: ArrayLike, vectors: Array) -> Array:
 
 
 def across_axis(vectors: Array) -> Array:
-    """Return the cross product of the gear's axis with vectors.
+    """Return the cross product z x v of the gear's axis with vectors: their change per turn about +z.
 
     Parameters
     ----------

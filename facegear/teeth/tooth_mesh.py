@@ -123,7 +123,7 @@ def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
 
 
 def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: float) -> FeTooth:
-    """Build the finite elements of one tooth between two ends along its width."""
+    """Build the finite elements of one tooth of a body between two ends (m: y of the pinion, gear radius)."""
     layers = max(2, round((end - start) / sizes.width))
     outline = Outline(design, body, np.linspace(start, end, 2 * layers + 1))
     plan = plan_section(outline, sizes)
@@ -169,30 +169,34 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
 
 
 def _transpose_grid(quads: Integers) -> Integers:
-    """Exchange the two local axes of nine-node quadrilaterals."""
+    """Exchange the two local axes of nine-node quadrilaterals (n, 9), which reverses their normals."""
     return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
 
 
 def _extruded(quads: Integers, layers: int, count: int) -> Integers:
-    """Return 27-node elements from nine-node quadrilaterals over layers along the width."""
+    """Return 27-node elements (layers n, 27) from quadrilaterals (n, 9) of a section of `count` nodes."""
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (quads[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 27)
 
 
 def _extruded_edges(edges: Integers, layers: int, count: int) -> Integers:
-    """Return nine-node quadrilaterals from three-node edges over layers along the width."""
+    """Return quadrilaterals (layers n, 9) from edges (n, 3) of a section of `count` nodes."""
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (edges[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 9)
 
 
 def _boundary_edges(plan: SectionPlan, mirror: Integers, back: str) -> dict[str, Integers]:
-    """Edges of three nodes of the whole section by group."""
+    """Return boundary edges (n, 3) of the whole section by group: `flank_right`, `tip`, ... and `back`.
+
+    `mirror` gives the left node of each node of the right half.
+    """
     half = plan.half
     sides = half.quads[:, [[0, 1, 2], [0, 3, 6], [6, 7, 8], [2, 5, 8]]].reshape(-1, 3)
     sigma, t = half.sigma[sides], half.t[sides]
     last = half.sigma.max()
 
     def between(name: str) -> Mask:
+        """Return the mask of edges at the surface within a segment of the outline."""
         low, high = plan.breaks[name]
         return (t == 0).all(axis=1) & (sigma >= low - 1e-12).all(axis=1) & (sigma <= high + 1e-12).all(axis=1)
 
@@ -209,7 +213,11 @@ def _boundary_edges(plan: SectionPlan, mirror: Integers, back: str) -> dict[str,
 
 
 def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, hexes: Integers) -> Integers:
-    """Faces with their normals pointing out of the element they belong to."""
+    """Return faces (n, 9), turned over where needed so that their normals point out of their element.
+
+    owner: centres (n, 3) of these elements, m, if known; None looks for them by the faces' middle nodes among
+    `hexes`, whose centres (m, 3) are `centre`.
+    """
     if owner is None:
         face_of = {int(node): i for i, node in enumerate(faces[:, 4])}
         rows, columns = np.nonzero(np.isin(hexes[:, [4, 10, 12, 14, 16, 22]], faces[:, 4]))
@@ -224,7 +232,10 @@ def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, 
 def _surfaces(
     outline: Outline, plan: SectionPlan, mirror: Integers, planes: Integers
 ) -> dict[str, SurfaceGrid]:
-    """Return the grids of nodes on flank and fillet with their parameters."""
+    """Return the grids of nodes on flank and fillet of both sides with their surface parameters.
+
+    `mirror`: left node of each right one; `planes`: what is added to a section's node for each plane.
+    """
     half = plan.half
     surface = np.flatnonzero(half.t == 0)
     surface = surface[np.argsort(half.sigma[surface])]
@@ -256,12 +267,12 @@ class SectorMesh:
     is_closed: bool
 
     def faces(self, name: str) -> Integers:
-        """Return the faces of a group over all teeth; cut faces only where the sector ends.
+        """Return the boundary faces of a group over all teeth; cut faces only where the sector ends.
 
         Parameters
         ----------
         name : str
-            Name of the group.
+            Name of the group, see `FeTooth.faces`.
 
         Returns
         -------
@@ -295,7 +306,7 @@ def sector(tooth: FeTooth, n_teeth: int, first: int = 0) -> SectorMesh:
     Returns
     -------
     SectorMesh
-        Joined teeth.
+        Joined teeth in the body frame, tooth j turned by j pitches.
 
     Raises
     ------

@@ -54,7 +54,7 @@ class UnloadedContact:
 
     @property
     def path(self) -> tuple[Array, Array]:
-        """Roll angle (rad) and y (m) of the touching point, (p,)."""
+        """Roll angle (rad) and y (m), on the pinion, of the touching point of pair `tooth`, (p,)."""
         rows = np.arange(len(self.phi1))
         column = np.searchsorted(PAIRS, self.tooth)
         return self.roll[rows, column], self.y[rows, column]
@@ -76,7 +76,7 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     Returns
     -------
     UnloadedContact
-        Contact at p angles, in m and rad.
+        Gear angle, transmission error, touching pair, and gaps of all pairs at p angles, in m and rad.
 
     Raises
     ------
@@ -98,7 +98,8 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
 
 
 def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
-    """Compute the motion of `unloaded_contact`, with no search if there is an exact answer.
+    """Compute gear angle and transmission error of `unloaded_contact` alone, in closed form where there
+    is one.
 
     Results of a search are kept for later calls.
 
@@ -135,7 +136,9 @@ def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=16)
 def _searched_motion(design: PairDesign) -> dict[float, tuple[float, float]]:
-    """Return the results of searches for a design: phi2 (rad) and transmission error (m) by phi1 (rad)."""
+    """Return the design's one dictionary of earlier searches, empty at first, which `unloaded_motion` fills:
+    phi2 (rad) and transmission error (m) by phi1 (rad).
+    """
     return {}
 
 
@@ -149,7 +152,7 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
     phi1 : (p,) array_like
         Pinion angle, rad.
     every_pair : bool
-        If False, gaps of pairs that cannot touch are rough.
+        If False, gaps of pairs that cannot touch come from the first grids alone.
 
     Returns
     -------
@@ -210,7 +213,7 @@ POSITIONS = 4
 
 @lru_cache(maxsize=256)
 def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float:
-    """Compute the backlash along the line of action, smallest of a few positions of a pitch.
+    """Compute the normal backlash of the assembled pair, smallest of a few positions of a pitch.
 
     Without assembly errors and deviations it is the thinning of the pinion's teeth.
 
@@ -225,7 +228,7 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
     Returns
     -------
     float
-        m; negative where it jams.
+        Play between drive and back flank along the line of action, m; negative where the pair jams.
 
     Raises
     ------
@@ -241,7 +244,9 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
 
 
 def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
-    """Return the smallest play, m, of the drive and back flank over a pitch, by a search over the flanks."""
+    """Return the smallest backlash (m) over POSITIONS of a pitch, by `unloaded_motion` of drive and back
+    flanks.
+    """
     positions = (np.arange(POSITIONS) + 0.5) / POSITIONS
     phi1 = pinion_angle(design, positions)
     if beside:
@@ -252,7 +257,7 @@ def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
 
 
 def gear_backlash(family: ToothFamily, pose: PinionPose | None = None) -> float | None:
-    """Compute the backlash of the unmodified flanks in a pose.
+    """Compute the backlash of the unmodified flanks in a pose, in closed form; edges are left out.
 
     Parameters
     ----------

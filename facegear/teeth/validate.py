@@ -21,7 +21,7 @@ NARROWEST = 0.5
 
 @lru_cache(maxsize=64)
 def check(design: PairDesign) -> RadiusLimits:
-    """Check that the design can exist.
+    """Raise an error if the design cannot exist; return the limits of its face.
 
     Parameters
     ----------
@@ -47,12 +47,14 @@ def check(design: PairDesign) -> RadiusLimits:
 
 
 def _refuse(key: str, value: float, requirement: str) -> None:
-    """Raise GeometryError for a dimension by its key."""
+    """Raise GeometryError for a value (in the key's unit) by its key in the section tooth_pair."""
     raise GeometryError(key, value if isinstance(value, int) else round(float(value), 6), requirement)
 
 
 def _check_pinion(design: PairDesign) -> None:
-    """Refuse a pinion whose tooth cannot exist."""
+    """Raise GeometryError if rack rounding, dedendum, profile shift, chamfer, tip land or bore are
+    impossible.
+    """
     part, m, angle = design.pinion, design.module, design.pressure_angle
     rho = part.rack_tip_radius
     half_thickness = pi * m / 4 + part.thinning / (2 * cos(angle))
@@ -103,7 +105,7 @@ def _check_pinion(design: PairDesign) -> None:
 
 
 def _check_relief(design: PairDesign) -> None:
-    """Refuse modifications of the pinion that do not fit its flank."""
+    """Refuse reliefs and crowning of the pinion above MAX_RELIEF modules, or longer than its flank."""
     part = design.pinion
     flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
     crowning, half = part.lead_crowning, 0.5 * (design.face_gear.outer_radius - design.face_gear.inner_radius)
@@ -125,7 +127,7 @@ def _check_relief(design: PairDesign) -> None:
 
 
 def _check_gear_modifications(design: PairDesign) -> None:
-    """Refuse modifications of the face gear that do not fit its flank."""
+    """Refuse modifications of the face gear above MAX_RELIEF modules, or longer than its flank."""
     gear, modifications, at_most = (
         design.face_gear,
         design.face_gear.modifications,
@@ -157,8 +159,8 @@ def _check_gear_modifications(design: PairDesign) -> None:
 def _check_crowning_at_end(
     crowning: Relief, half_width: float, max_relief: float, key: str, face: str
 ) -> None:
-    """Refuse a crowning whose parabola, which goes on beyond its length, is too deep at the ends of
-    the face.
+    """Refuse a crowning whose parabola, which goes on beyond its length, is deeper than `max_relief` (m)
+    at the ends of the face, `half_width` (m) from its middle.
     """
     beyond = half_width - crowning.start
     if crowning.amount == 0 or beyond <= 0:
@@ -176,7 +178,9 @@ def _check_crowning_at_end(
 def _check_modification(
     key: str, relief: Relief, available_length: float, max_relief: float, length_name: str
 ) -> None:
-    """Refuse a relief that is too large or too long."""
+    """Refuse a relief above `max_relief` (m), without length, or that reaches beyond `available_length`
+    (m).
+    """
     if relief.amount == 0:
         return
     if relief.amount > max_relief:
@@ -194,7 +198,7 @@ def _check_modification(
 
 
 def check_shaper(design: PairDesign) -> None:
-    """Refuse a tool that cannot be made, or not for this pinion.
+    """Refuse a tool whose tooth number, addendum, tip land or tip rounding cannot be, or not for this pinion.
 
     Parameters
     ----------
@@ -229,14 +233,14 @@ def check_shaper(design: PairDesign) -> None:
 
 
 def _land_left(design: PairDesign, rounding: float) -> float:
-    """Return the width (m) of the shaper's tip land, with a tip rounding, beyond the thinnest allowed."""
+    """Return the width (m) of the shaper's tip land with a tip rounding (m), less the thinnest allowed."""
     tool = replace(design, shaper=replace(design.shaper, tip_rounding=rounding))
     return 2 * face_gear_fillet.root_half_angle(tool) * tool.gear_pitch_radius - THINNEST_LAND * tool.module
 
 
 @lru_cache(maxsize=16)
 def _check_gear(design: PairDesign) -> RadiusLimits:
-    """Refuse a face gear that cannot exist, and return the limits of its radii."""
+    """Refuse a face gear (of a pair by `as_cut`) that cannot exist, and return the limits of its radii."""
     gear, m = design.face_gear, design.module
     if gear.addendum >= design.pinion.dedendum:
         _refuse(
@@ -275,7 +279,9 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
 
 
 def _check_width(design: PairDesign) -> None:
-    """Refuse a pinion that is too narrow or too wide for the face."""
+    """Refuse a pinion narrower than NARROWEST of the gear's face, or so wide that it reaches the gear's
+    axis.
+    """
     gear, width = design.face_gear, design.pinion.width
     min_width, max_width = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
     if width < min_width:
