@@ -33,7 +33,8 @@ class LocusProblem:
     plane : Plane
         Systems, by two parameters.
     period_map : PeriodMap
-        Map with the tolerance and the number of mesh periods.
+        Map with the tolerance and the number of mesh periods; its family is replaced by lines of the
+        plane.
     """
 
     kind: Kind
@@ -82,7 +83,11 @@ class LocusProblem:
 
 @dataclass(frozen=True, eq=False)
 class Borders:
-    """Column `left` and row `right`, each (size,), that border a singular matrix."""
+    """Column `left` and row `right`, each (size,), that border a singular matrix so that it becomes
+    regular.
+
+    They are near the left and right singular vectors of its smallest singular value, see borders_of().
+    """
 
     left: Array
     right: Array
@@ -124,7 +129,7 @@ class LocusPoint:
     Attributes
     ----------
     x : (2 n + 2,) array
-        Weighted state, logarithms of both parameters.
+        Weighted state, see PeriodMap, then the natural logarithms of the first and second parameter.
     tangent : (2 n + 2,) array
         Unit tangent of the locus.
     bend : float
@@ -164,7 +169,8 @@ def reverse_tangent(point: LocusPoint) -> LocusPoint:
 
 
 def borders_of(matrix: Array, before: Borders | None) -> Borders:
-    """Singular vectors of the smallest singular value, with the signs of the previous borders.
+    """Return the singular vectors of the smallest singular value as borders, with the signs of the
+    previous ones.
 
     Parameters
     ----------
@@ -250,7 +256,12 @@ def solve_on_locus(
 
 
 def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
-    """Return the map at x, the two directions (2 n + 2, 2) of the surface of orbits, and the step onto it."""
+    """Return the linearised map at x, the surface of orbits there, and the Newton step (2 n + 2,) onto
+    the surface.
+
+    The surface is given by two orthonormal directions (2 n + 2, 2) along which state and both parameters
+    stay on orbits.
+    """
     z, u, v = x[:-2], x[-2], x[-1]
     linear = problem.at(v).linear(z, u)
     ahead, back = (problem.at(v + sign * DIFFERENCE).gap(z, u) for sign in (1.0, -1.0))
@@ -269,7 +280,12 @@ def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
 def _gradient(
     problem: LocusProblem, x: Array, surface: Array, borders: Borders, test: float, sharp: bool
 ) -> Array:
-    """Change of the test function along the surface of orbits, as a vector (2 n + 2,) in it."""
+    """Return the change of the test function along the surface of orbits, as a vector (2 n + 2,) in the
+    surface.
+
+    Its two components are differences: forward ones over DIFFERENCE from the value `test` at x, or
+    central ones over SHARP.
+    """
 
     def test_at(along: Array, step: float) -> float:
         position = x + step * along
@@ -284,7 +300,9 @@ def _gradient(
 
 
 def _point(problem: LocusProblem, x: Array, borders: Borders, forward: Array, sharp: bool) -> LocusPoint:
-    """Return a point of a locus with its borders, gradient and tangent."""
+    """Return the solution x as a point of the locus: with new borders, gradient, and the tangent nearest
+    to `forward`.
+    """
     linear, surface, _ = _surface(problem, x)
     matrix = problem.matrix(linear)
     fresh = borders_of(matrix, borders)
