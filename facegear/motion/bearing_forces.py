@@ -53,7 +53,10 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
 
 
 def bearing_forces(model: Model, motion: Track) -> Array:
-    """Compute the force of every body on its bearing: springs, their damping of equation (21), and dampers.
+    """Compute the force of every body on its bearing: springs, their damping of equation (21), and
+    dampers.
+
+    It is positive along the body's displacement; the bearing pushes back with the opposite force.
 
     The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
     clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
@@ -99,7 +102,10 @@ class _BearingMaps(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
-    """Return the matrices from reduced displacement and velocity to bearing forces."""
+    """Return the matrices from reduced displacement and velocity to bearing forces, see _BearingMaps.
+
+    The result is cached and must not be changed.
+    """
     linear = machine.linear
     displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
     in_rings = np.zeros(linear.translations.shape, dtype=bool)
@@ -118,7 +124,8 @@ def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Inte
     """Return matrices (n, coordinates) from reduced displacement and velocity to forces on springs and
     dampers.
 
-    The forces and moments act along the given coordinates.
+    Displacement @ first + velocity @ second gives the force (N) or moment (N m) along each of the given
+    coordinates of the linear model.
     """
     basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]
@@ -218,5 +225,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
 
 
 def _with_radial(forces: Array) -> Array:
-    """Forces (K, bodies, 3) with their radial magnitude as a fourth."""
+    """Return forces (K, bodies, 3) along x, y, z, with hypot(x, y) appended as a fourth, (K, bodies, 4),
+    N.
+    """
     return np.concatenate([forces, np.hypot(forces[..., :1], forces[..., 1:2])], axis=-1)

@@ -114,9 +114,11 @@ SLOWEST_RPM = 1.0
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """Evenly spaced speeds from first to last, run in each direction in chunks.
+    """Evenly spaced pinion speeds from first to last, rpm, run in each direction ("up", "down") in
+    chunks.
 
-    A chunk first runs `overlap` speeds of the one before it, until the state has forgotten its start.
+    A chunk first runs the last `overlap` speeds of the chunk before it, until the state has forgotten its
+    start. Jumps are bracketed to `jump_resolution_rpm`; `settings` are those of every run.
     """
 
     first_rpm: float
@@ -158,7 +160,7 @@ class SweepPlan:
 class JumpRange:
     """Range in which jumps are sought.
 
-    It reaches `range_rpm` to both sides, in steps of at most `step_rpm`. A jump is bracketed to
+    It reaches `range_rpm` to both sides of a speed, in steps of about `step_rpm`. A jump is bracketed to
     `resolution_rpm`; `settings` are those of the sweeps.
     """
 

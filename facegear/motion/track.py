@@ -72,7 +72,7 @@ def split_loads(forces: Array, rounding: float, loads: Array) -> None:
     Parameters
     ----------
     forces : (M, K)
-        Force that each mesh transmits, N.
+        Force that each mesh transmits, N; positive on the drive flank, negative on the back flank.
     rounding
         Part of the largest force up to which a force counts as none, dimensionless.
     loads : (2 M, K)
@@ -162,7 +162,7 @@ class SampledTrack:
 
     @cached_property
     def rates(self) -> Array:
-        """Velocities (K, n)."""
+        """Velocities (K, n), in the coordinates' unit per second."""
         time = np.arange(self.count) * self.step
         return np.asarray(scipy.interpolate.CubicSpline(time, self.samples)(time, 1))
 
@@ -233,7 +233,9 @@ def periodic_track(samples: Array, step: float, factor: int = 1) -> PeriodicTrac
 
 @dataclass(frozen=True, eq=False)
 class DenseMotion:
-    """A response at K evenly spaced instants, `per_period` of them in each mesh period."""
+    """A response at K evenly spaced instants, `per_period` of them in each mesh period; quantities are
+    computed on demand.
+    """
 
     response: SteadyState
     per_period: int
@@ -241,7 +243,9 @@ class DenseMotion:
 
     @cached_property
     def beyond(self) -> Array:
-        """Compression of each mesh or flank (contacts, periods, per_period), m."""
+        """Compression of each mesh or flank (contacts, periods, per_period), m, negative on the lower
+        side of a mesh, 0 when open.
+        """
         system = self.response.system
         jacobian = system.mesh_jacobian[: system.contacts].T
         deflections = self.track.along(jacobian, np.zeros_like(jacobian))
@@ -252,12 +256,14 @@ class DenseMotion:
 
     @cached_property
     def deepest(self) -> Array:
-        """Largest compression of each mesh or flank (contacts,), m."""
+        """Largest magnitude of the compression of each mesh or flank over all instants (contacts,), m."""
         return np.maximum(self.beyond.max(axis=(1, 2)), -self.beyond.min(axis=(1, 2)))
 
     @cached_property
     def forces(self) -> Array:
-        """Elastic mesh forces (meshes, K), N; with two flanks the difference of both."""
+        """Elastic mesh forces (meshes, K), N, positive on the drive flank; with two flanks drive less
+        back flank.
+        """
         system, cycles = self.response.system, np.arange(self.per_period) / self.per_period
         contact_forces = system.law.force(cycles, np.moveaxis(self.beyond, 0, -1))
         forces = np.moveaxis(contact_forces, -1, 0).reshape(system.contacts, -1)
@@ -268,7 +274,9 @@ class DenseMotion:
 
     @cached_property
     def loads(self) -> Array:
-        """Elastic mesh forces (meshes, K), N, without those that are rounding beside the largest."""
+        """Elastic mesh forces (meshes, K), N, as `forces`, but 0 where they are rounding beside the
+        largest.
+        """
         return significant_forces(self.forces)
 
     @property

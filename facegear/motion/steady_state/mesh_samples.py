@@ -37,6 +37,8 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
 def each_deflection(system: System, coordinates: Array, per_period: int) -> Array:
     """Compute the deflections G y - e of each contact: each mesh, or each flank where meshes have two.
 
+    G is the mesh Jacobian, y are the coordinates, and e is the transmission error.
+
     Parameters
     ----------
     system : System
@@ -144,7 +146,7 @@ def _transmitted(system: System, contact_deflections: Array, cycles: Array) -> A
 
 
 def largest_mesh_forces(system: System, contact_deflections: Array, per_period: int, wraps: bool) -> Array:
-    """Largest magnitude of each elastic mesh force, located between the samples.
+    """Compute the largest magnitude of each elastic mesh force, located between the samples.
 
     Between samples the deflections are polynomials. The mesh law turns these into forces, so that a short
     contact has its kink where the flank touches.
@@ -236,9 +238,10 @@ def mesh_fractions(system: System, fractions: Array, contact_deflections: Array)
 
 
 def _never_pressed(deepest: Array, fractions: Array, samples: int) -> Mask:
-    """Find contacts that touch for longer than a sample but are never compressed by more than rounding.
+    """Return which contacts touch for longer than a sample but are never compressed by more than
+    rounding, (m,).
 
-    `deepest` (m,) is the largest height of the samples beyond the edge; `fractions` (m,) is the time in
-    contact.
+    `deepest` (m,) is the largest compression among the samples, m, negative where there is none.
+    `fractions` (m,) of the time are those in contact, `samples` their number.
     """
     return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (fractions * samples > 1.0)

@@ -27,7 +27,7 @@ EQUAL = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A periodic motion.
+    """Samples of a periodic motion over its period, to compare it with its images under symmetries.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Cycle:
     per_period : int
         Number of samples in each mesh period.
     orbit : Orbit or None
-        Its orbit, whose neutral directions are not compared.
+        Its orbit, if known: differences along its neutral directions do not count.
     """
 
     system: System
@@ -115,7 +115,9 @@ class Cycle:
 
     @property
     def _neutral(self) -> Array:
-        """Orthonormal directions (n, k) in which bodies are free."""
+        """Orthonormal directions (n, k) of the coordinates along which the orbit is neutral, as bodies
+        are free there.
+        """
         size = self.system.size
         if self.orbit is None or self.orbit.is_off_circle.all():
             return np.zeros((size, 0))
@@ -170,7 +172,7 @@ def held_symmetries(response: SteadyState) -> tuple[Symmetry, ...]:
 
 
 def symmetries_of_start(system: System, start: State) -> tuple[Symmetry, ...]:
-    """Return the symmetries that leave a start unchanged: those without a shift, and at rest all.
+    """Return the symmetries that map a start to itself; those with a shift in time only if it is at rest.
 
     Parameters
     ----------
@@ -291,7 +293,12 @@ def start_on_image(response: SteadyState, start_symmetries: Sequence[Symmetry]) 
 
 
 def _preferred(cycle: Cycle, moments: Moments, start_symmetries: Sequence[Symmetry]) -> Symmetry | None:
-    """Return the symmetry that leads to the preferred image; None where that is the motion itself."""
+    """Return the symmetry, of those of the start, that leads to the preferred image; None where that is
+    the motion itself.
+
+    The preferred one has the largest AC RMS in the first mesh in which images differ, else the largest
+    mean.
+    """
     if all(map(cycle.holds, start_symmetries)):
         return None
     best, best_numbers = None, np.concatenate([moments.ac_rms, moments.mean])
@@ -304,7 +311,7 @@ def _preferred(cycle: Cycle, moments: Moments, start_symmetries: Sequence[Symmet
 
 
 def _comes_first(numbers: Array, reference: Array) -> bool:
-    """Whether the first number that differs from the reference's is larger."""
+    """Whether the first of the numbers (k,) that differs from the reference's is larger than it."""
     apart = np.flatnonzero(np.abs(numbers - reference) > EQUAL * np.abs(reference).max(initial=0.0))
     return bool(apart.size and numbers[apart[0]] > reference[apart[0]])
 
@@ -315,7 +322,9 @@ def _cycle_of(response: SteadyState) -> Cycle:
 
 
 def _cycle_of_first_watch(first_watch: FirstWatch, system: System) -> Cycle | None:
-    """Return the cycle of a motion after its first watch, None if it has not settled."""
+    """Return the cycle of a motion after its first watch; None if it has not settled or no window was
+    run.
+    """
     if first_watch.watch_result is None:
         return None
     window = first_watch.watch_result.window

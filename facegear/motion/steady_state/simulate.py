@@ -82,7 +82,11 @@ def build_model(machine: Machine) -> Model:
 
 
 def _excited(machine: Machine, basis: Array, system: System) -> System:
-    """Add the periodic torques to a system. Raises InvalidInput where one does not repeat with the mesh."""
+    """Return the system with the load of the machine's periodic torques added. Raises InvalidInput.
+
+    `basis` (dof, n) is that of the reduction. InvalidInput is raised where a torque does not repeat with
+    the mesh.
+    """
     if not machine.excitations:
         return system
     last = max(excitation.mesh_harmonic for excitation in machine.excitations)
@@ -162,7 +166,7 @@ def simulating(
     start: State | None = None,
     guide: Guide | None = None,
 ) -> RunPlan[SteadyState]:
-    """Run plan of simulate(), for many computations side by side.
+    """Return the run plan of simulate(), to compute many steady states side by side with side_by_side().
 
     Parameters
     ----------
@@ -253,7 +257,10 @@ def start_run(
     known_orbit: KnownOrbit | None = None,
     start_symmetries: Sequence[Symmetry] | None = None,
 ) -> RunPlan[StartedRun]:
-    """Run plan of the first watch of simulate(); it ends where the run comes to a known orbit of the model.
+    """Return the run plan of the first part of simulate(): a run until it settles, or is first taken not
+    to settle.
+
+    The rest is StartedRun.follow(). A run that comes to `known_orbit` ends there.
 
     Where the run breaks a symmetry of its start, a rule decides which of the mirror images is taken. A guide
     leads to the image next to it.
@@ -297,7 +304,7 @@ def start_run(
 
 @contextmanager
 def _naming(speed_rpm: float) -> Iterator[None]:
-    """Name the speed in the message of a computation that does not converge."""
+    """Context in which a NotConverged is raised again with the speed as its place."""
     try:
         yield
     except NotConverged as error:
@@ -347,7 +354,9 @@ def _begin_watch(
     guide: Guide | None,
     known_orbit: KnownOrbit | None = None,
 ) -> RunPlan[FirstWatch]:
-    """Run plan of the first watch of a system from a start."""
+    """Run plan of the first watch of a system from a start; a guide that does not serve the system is
+    left out.
+    """
     guide = guide if guide is not None and settings.refine and guide.serves(system) else None
     like = None if guide is None else guide.integrator
     integrator = Integrator(system, frequency, settings.tolerance, settings.order, like)
@@ -355,7 +364,9 @@ def _begin_watch(
 
 
 def _steady(system: System, first_watch: FirstWatch) -> RunPlan[SteadyState]:
-    """Run plan of the steady state of a run, and of the check whether it holds from other starts."""
+    """Run plan of the steady state of a run after its first watch, and of the check whether it holds from
+    other starts.
+    """
     integrator, settings = first_watch.integrator, first_watch.settings
     watch_result = yield from watch(first_watch)
     disagreement = yield from find_disagreement(integrator, first_watch.start, settings, watch_result)

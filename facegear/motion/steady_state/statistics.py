@@ -19,7 +19,8 @@ values).
 
 
 def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
-    """Moments of evenly spaced samples over whole periods; extremes are located between the samples.
+    """Compute the moments of evenly spaced samples over whole periods; extremes are located between the
+    samples.
 
     They are right where the samples resolve all motion; the moments of a response come from its step
     polynomials.
@@ -61,7 +62,8 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
 
 
 def batch_means(values: Array, per_period: int) -> Array:
-    """Means over batches of whole periods.
+    """Compute the means over at most BATCHES batches of equally many whole periods; periods left over are
+    dropped.
 
     Parameters
     ----------
@@ -114,7 +116,10 @@ def drifts(averages: Averages, by_period: Array) -> bool:
 
 
 def _ac_rms(averages: Averages) -> tuple[Array, Array]:
-    """AC RMS (meshes,) of the deflections over a few batches, and its half-width by successive batches."""
+    """Return the AC RMS (meshes,) of the deflections over the batches, m, and its 95 % half-width, m.
+
+    The half-width allows for the correlation of successive batches, see successive_interval().
+    """
     ac_rms = averages.meshes(False).ac_rms
     half_width = successive_interval(averages.centred_squares)
     return ac_rms, half_width / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))

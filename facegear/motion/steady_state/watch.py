@@ -171,7 +171,7 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
 def _periodic(
     integrator: Integrator, settling_result: SettlingResult, settings: Settings, periods_run: int
 ) -> WatchResult:
-    """Return the result of a run that settled on a periodic motion, measured over one window."""
+    """Return the result of a run that settled on a periodic motion, with a window of one period of it."""
     window = run_window(integrator, settling_result.state, settling_result.period, settings.samples)
     return WatchResult(settling_result, Motion.PERIODIC, None, window, periods_run)
 
@@ -207,7 +207,11 @@ def _class(
     window: Window,
     settings: Settings,
 ) -> Motion:
-    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after it."""
+    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after
+    it.
+
+    It is NOT_SETTLED if the run seems to close, drifts, or the growth of disturbances is inconclusive.
+    """
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
     near = best_return(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settling_result.residual, near.residual) < ESCAPING

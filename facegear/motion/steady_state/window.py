@@ -180,7 +180,7 @@ class Exponent:
     Attributes
     ----------
     growth : Growth
-        Conclusion.
+        Whether disturbances grow, by value and half-width.
     value, half_width : float
         Exponent per mesh period and its 95 % half-width.
     ends : (periods, 2, n) array
@@ -240,7 +240,10 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
 
 
 def _classify_growth(rates: Array) -> tuple[Growth, float, float]:
-    """Classify growth rates (periods,); return the class, their mean and its half-width."""
+    """Return the class of growth rates (periods,) per mesh period, their mean and its 95 % half-width.
+
+    A neutral mean is that of smooth_mean(), any other that of BATCHES batches.
+    """
     batches = np.array([part.mean() for part in np.array_split(rates, BATCHES)])
     mean, half = float(batches.mean()), float(independent_interval(batches))
     if mean - half > NEUTRAL:
@@ -252,8 +255,10 @@ def _classify_growth(rates: Array) -> tuple[Growth, float, float]:
 
 
 def smooth_mean(rates: Array) -> tuple[float, float]:
-    """Mean of a series weighted by exp(-1/(t(1 - t))), and its difference from those of two overlapping
-    parts.
+    """Compute the mean of a series weighted by exp(-1/(t(1 - t))), and how far the means of its parts
+    differ from it.
+
+    The parts are its first and its last three quarters.
 
     On a torus, where the growth only oscillates, it converges faster than any power of the length, while the
     plain mean errs by one oscillation over the length (Das et al. 2017).
@@ -274,6 +279,8 @@ def smooth_mean(rates: Array) -> tuple[float, float]:
 
 
 def _weighted_mean(rates: Array) -> float:
-    """Return the mean of rates with a smooth weight that vanishes at both ends."""
+    """Return the mean of rates (periods,) with the weight exp(-1 / (t (1 - t))), t from 0 to 1, which
+    vanishes at both ends.
+    """
     t = (np.arange(rates.size) + 0.5) / rates.size
     return float(np.average(rates, weights=np.exp(-1.0 / (t * (1.0 - t)))))

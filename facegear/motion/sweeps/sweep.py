@@ -242,7 +242,7 @@ def run_speeds(
     Returns
     -------
     iterator of tuple
-        Speed, rpm, and response.
+        Speed, rpm, and response, in the order of the speeds; computed as the iterator is read.
     """
     responses = carried_over(model, speeds, settings, start, StartedRun.follow, step, start_symmetries)
     return zip(speeds.tolist(), responses, strict=True)
@@ -257,7 +257,8 @@ def carried_over(
     step: Callable[[], None] = lambda: None,
     start_symmetries: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
-    """Run plans for the motions at speeds in the given order, each started from the state of the one before.
+    """Run plans for the motions at speeds in the given order, each started from the last state of the one
+    before.
 
     The state that a motion hands on is known after its first watch. Where the motion has settled, this is a
     state of the motion on which it has settled. Else it is the last state, as good as any other of an
@@ -274,7 +275,7 @@ def carried_over(
     start : State or None
         Start at the first speed; the static equilibrium if None.
     follow : callable
-        Makes a run plan of each started run.
+        Makes of each StartedRun a run plan, which returns the value to yield.
     step : callable
         Called without arguments after each first watch.
     start_symmetries : sequence of Symmetry, optional
@@ -325,9 +326,10 @@ def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
 def _row(
     views: Array, directions: int, speed: float, response: SteadyState
 ) -> dict[str, Array | float | str]:
-    """Return the numbers of one response that a sweep stores.
+    """Return the numbers of one response that a sweep stores, by the names of Piece's fields.
 
-    `views` (n, directions + modes) takes coordinates to translations and modes.
+    `views` (n, directions + modes) turns coordinates into the translations of all bodies along x, y, z,
+    then into modes.
     """
     periodic = response.period > 0
     meshes = response.moments

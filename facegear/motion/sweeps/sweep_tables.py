@@ -109,7 +109,8 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
 
 
 def maxima(curve: Array) -> list[int]:
-    """Find the maxima that are PROMINENT times the higher of the valleys beside them.
+    """Find the maxima above PROMINENT times the higher valley beside them, and at least SMALL times the
+    largest value.
 
     Parameters
     ----------
@@ -313,8 +314,8 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
     Returns
     -------
     DataFrame
-        RESONANCE_COLUMNS. `after_irregular`: that of the next speed, since a maximum needs both its
-        neighbours.
+        RESONANCE_COLUMNS. `value`: AC RMS in um. `after_irregular`: that of the next speed, since a
+        maximum needs both its neighbours.
     """
     rows, labels = [], piece.labels
     for quantity, item, position, value in peaks(piece):
@@ -337,12 +338,16 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
 
 
 def _after_irregular(piece: Piece, position: int) -> bool:
-    """Whether an irregular motion came up to the speed after this one, in the order of the run."""
+    """Whether a motion of the run up to the speed after this position, in the order of running, is not
+    periodic.
+    """
     return bool(piece.after_irregular[: position + 2].any())
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
-    """Return the columns that name a resonance: its kind, order and mode."""
+    """Return a resonance as the columns resonance (name), resonance_rpm, energy_fraction, mode and order
+    of a row.
+    """
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,
@@ -363,7 +368,7 @@ def seam_table(seams: list[Seam]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns direction, speed_rpm, kind, rerun.
+        Columns direction, speed_rpm, kind, rerun (number of speeds run again), see Seam.
     """
     columns = ["direction", "speed_rpm", "kind", "rerun"]
     return pd.DataFrame([asdict(seam) | {"kind": seam.kind.value} for seam in seams], columns=columns)
