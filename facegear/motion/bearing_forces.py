@@ -90,9 +90,10 @@ def bearing_forces(model: Model, motion: Track) -> Array:
 class _BearingMaps(NamedTuple):
     """Matrices that map reduced displacement and velocity to bearing forces.
 
-    `alone` (3 bodies,) marks the components on which no ring acts. The columns of displacement and velocity
-    (n, columns) give the forces of those, then displacement and velocity of each body in a ring along x and
-    y.
+    `alone` (3 bodies,) marks the components x, y, z of bodies that have a bearing without clearance. The
+    columns (n, columns) for displacement and velocity, multiplied and added, give the forces of these
+    components, N, then displacements and then velocities along x and y of each body in a bearing with
+    clearance (ring).
     """
 
     alone: Mask

@@ -21,7 +21,7 @@ class Motion(StrEnum):
 
 @dataclass(frozen=True)
 class Look:
-    """Motion to which one start has come.
+    """Motion in which the run from one start has ended, to compare it with other starts.
 
     Attributes
     ----------
@@ -52,9 +52,9 @@ class Settings:
     tolerance
         Local error of a step over the system's length scale.
     order
-        Of the Taylor steps, None: from the tolerance.
+        Order of the Taylor steps; None: from the tolerance, see taylor_order.
     dwell
-        Periods before anything is judged.
+        Periods that are run before it is examined whether the motion repeats.
     settle
         Periods for which a motion is watched before it counts as not periodic.
     longest_period
@@ -64,17 +64,17 @@ class Settings:
     window
         Periods over which a motion that is not periodic is measured, and before that its exponent.
     samples
-        Least number per period; more are taken where the motion needs them.
+        Least number of samples per period; more are taken where the motion needs them.
     refine
         Find periodic orbits to rounding by Newton's method, with Floquet multipliers.
     extensions
-        Times that the window of an undecided exponent is doubled, and that a motion is watched again whose
-        exponent and window do not agree.
+        Number of times that the window is doubled while the exponent is undecided, and number of times
+        that a motion is watched again whose exponent and window do not agree.
     second_looks
-        Other starts that a class of motion which is in doubt must come out from again.
+        Number of other starts from which a class of motion in doubt must result again; 0 for no check.
     aside
-        How far they lie from the first, over the length scale. A state carried over from an irregular motion
-        may be any of its states.
+        Distance of these starts from the first, over the length scale. A state carried over from an
+        irregular motion may be any of its states.
     """
 
     tolerance: float = 1e-8
@@ -160,8 +160,8 @@ class SweepPlan:
 class JumpRange:
     """Range in which jumps are sought.
 
-    It reaches `range_rpm` to both sides of a speed, in steps of about `step_rpm`. A jump is bracketed to
-    `resolution_rpm`; `settings` are those of the sweeps.
+    It reaches `range_rpm` to both sides of a speed, in steps of at most `step_rpm`. A jump is bracketed
+    to `resolution_rpm`; `settings` are those of the sweeps.
     """
 
     range_rpm: float

@@ -234,7 +234,7 @@ def _side_by_side(
 
 
 def _result(log: motion.Log, number: int, stretch: RunRequest) -> RunResult | NotConverged:
-    """Return the result of one machine of a run, or the error that it failed with."""
+    """Return the result of the machine with index `number` in a run, or the error that it failed with."""
     try:
         return result_of(log, number, stretch.integrator, stretch.periods)
     except NotConverged as failure:

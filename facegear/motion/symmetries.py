@@ -130,11 +130,11 @@ class _Search:
         return tuple(symmetries_so_far)
 
     def _shifts(self) -> list[float]:
-        """Return shifts, in mesh periods, at which the first contact that varies over the period may equal
-        another contact.
+        """Return the shifts in time, in mesh periods, at which a symmetry may exist; 0 is always among
+        them.
 
-        The variation may be in its force law, or in its error or load, both up to their sign. Where nothing
-        varies, only the shift 0 is examined.
+        They make the first contact that varies over the period equal to another one: in its force law, or
+        in its error or load, both up to their sign. Where nothing varies, only the shift 0 is examined.
         """
         forces = self._forces(0.0)[0]
         signed_signals = np.stack([self._errors(0.0), self._load(0.0)[0] @ self.jacobian.T])
@@ -260,7 +260,8 @@ class _Search:
         )
 
     def _known_images(self, contacts: Integers, signs: Array, shift: float) -> tuple[Array, Array]:
-        """Return rows (rows, n) whose images under a permutation of contacts are known, and these images.
+        """Return rows (k, n) whose images under a signed permutation of contacts and a shift are known,
+        and these images (k, n).
 
         The rows are those of the Jacobian, friction and load, their products with the couplings, and the
         directions that bearings with clearance feel beside them.
@@ -280,7 +281,7 @@ class _Search:
         return vectors, mapped
 
     def _by_group(self, rows: Sequence[Array]) -> Array:
-        """Return rows (k, n), each cut to the coordinates of one group, group by group.
+        """Return rows (k, n), each cut to the coordinates of one group, group by group: (groups * k, n).
 
         The image of a row holds for its part in each group, since a symmetry does not mix groups.
         """
@@ -288,8 +289,8 @@ class _Search:
         return np.concatenate([whole * np.isin(np.arange(size), group) for group in self.groups])
 
     def _friction(self, shift: float) -> Array:
-        """Return the vector (contacts, phases, n) that friction adds to the load for a unit force of each
-        contact.
+        """Return the generalised force (contacts, phases, n) of friction for a unit force of each
+        contact, a shift later.
         """
         rubbing = self.system.rubbing
         vectors = np.zeros((self.count, PHASES, self.system.size))
@@ -307,7 +308,9 @@ class _Search:
 
     @property
     def _couplings(self) -> list[Array]:
-        """Coupling matrices (n, n) beside the diagonal ones, each of size one."""
+        """Matrices (n, n) of the dampers, gyroscopic, circulatory and centrifugal coupling, each divided
+        by its largest entry.
+        """
         coupling = self.system.coupling
         if coupling is None:
             return []

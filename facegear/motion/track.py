@@ -113,7 +113,7 @@ class PeriodicTrack:
     Attributes
     ----------
     waves : (n, W) array
-        Complex amplitudes of the coordinates times K.
+        Discrete Fourier transform (np.fft.rfft) of the coordinates at the K instants.
     count : int
         Number K of instants.
     step : float
@@ -289,7 +289,7 @@ class DenseMotion:
     @property
     def past_law(self) -> Array:
         """Fraction of the instants (contacts,) at which a contact is compressed beyond the last level of
-        its law.
+        its law's table.
         """
         law = self.response.system.law
         if law.straight:

@@ -58,7 +58,7 @@ class ContinuationSettings:
     Attributes
     ----------
     p_min, p_max : float
-        Range of the parameter.
+        Range of the parameter, in its unit.
     first, ds_min, ds_max : float
         First, smallest and largest step length.
     max_points : int
@@ -257,7 +257,7 @@ def _track(
 
 
 def _outward(start: BranchPoint, run: ContinuationSettings) -> bool:
-    """Whether a point at a limit of the parameter has a tangent that leads beyond it."""
+    """Whether the tangent at a point that lies at a limit of the parameter leads beyond this limit."""
     upper = abs(start.u - np.log(run.p_max)) < abs(start.u - np.log(run.p_min))
     return bool(start.tangent[-1] > 0.0) == upper
 
@@ -316,8 +316,10 @@ def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
 def _closing_point(
     period_map: PeriodMap, images: list[Array], current_point: BranchPoint, next_point: BranchPoint
 ) -> BranchPoint | None:
-    """Return the point at which the branch comes back to its start, at any of the start's mesh periods,
-    or None.
+    """Return the start as a point of the branch if the branch comes back to it in this step, else None.
+
+    `images` are the start's states at each of its mesh periods, see _images(): a branch may return to any
+    of them.
     """
     chord = next_point.x - current_point.x
     length = np.linalg.norm(chord)
@@ -348,9 +350,11 @@ def _closing_point(
 def _between_points(
     period_map: PeriodMap, current_point: BranchPoint, next_point: BranchPoint
 ) -> tuple[DividedStep, list[BranchPoint], BranchEnd | None]:
-    """Find the special points between two points, and the points that follow the current one.
+    """Return the special points of a step, the points that follow the current one, and why the branch
+    ends, or None.
 
-    Where the branch runs into its own image, the points are its last ones and the third value is that end.
+    Where the branch runs into its own image, shifted by half its period, the points lead up to that
+    place. The end is then DOUBLING.
     """
     meeting = reversal(period_map, current_point, next_point)
     if meeting is None:
@@ -366,9 +370,9 @@ def _between_points(
 def _cut_at_junction(track: _Track, begin: int) -> bool:
     """Cut the track at a branch point at which it turns round, and return whether there was one.
 
-    The branch ends where the other branch goes through; what follows is its own mirror image. `begin` is the
-    number of the point from which the last step went. Points that were put inside that step do not count as
-    steps.
+    Branch point and fold lie together where the branch meets the branch it left from; what follows is its
+    own mirror image. `begin` is the index of the point from which the last step went. Points that were
+    put inside that step do not count as steps.
     """
     late = [special for special in track.specials if special.after > begin + 1 - NEAR_JUNCTION]
     for special in late:

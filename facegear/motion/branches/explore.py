@@ -130,7 +130,9 @@ class _Runs:
 
     @property
     def patience(self) -> int:
-        """Number of blocks in which a run may come to a known orbit."""
+        """Number of blocks of periods that a run is given to come to a known orbit; 1 while none is
+        known.
+        """
         return PATIENCE if self.images else 1
 
     def go_on(self, paths: list[list[Array]]) -> None:
@@ -146,8 +148,8 @@ class _Runs:
             path.extend(ends[BLOCK - 1 :: BLOCK])
 
     def nearby_motion(self, path: list[Array]) -> int | None:
-        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there is
-        none.
+        """Return the index of the motion whose orbit a path has come within NEAR of, and closer than a
+        block before, or None.
         """
         if not self.images:
             return None
@@ -157,7 +159,9 @@ class _Runs:
         return self.images[close[0, 1]][0] if len(close) else None
 
     def settle(self, z: Array) -> int:
-        """Run a state until it settles by itself, and return the number of its motion."""
+        """Run a weighted state (2 n,) until it settles by itself; return the index of its motion, which
+        is added if it is new.
+        """
         motion = _run_until_settled(self.period_map, self.u, z, self.settings)
         for number, earlier_motion in enumerate(self.motions):
             if _is_same_motion(self.period_map, self.u, motion, earlier_motion):

@@ -92,7 +92,9 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:
-    """Return the edges (2, m) of all meshes over the length scale; nan where a mesh never opens."""
+    """Return the lower and upper edges (2, m) of all meshes, in length scales; NaN where a mesh never
+    opens.
+    """
     levels = np.array(period_map.edges(u))
     return np.where(np.isfinite(levels), levels, np.nan)
 

@@ -172,10 +172,9 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
 
 
 def _join(first: list[Special], second: list[Special]) -> list[Special]:
-    """Return the special points of two halves of a stretch, grazes at their border as one.
+    """Return the special points of both halves of a stretch, with a graze that both contain as one.
 
-    Where a stretch is divided at a graze, rounding decides in which half each of the meshes that graze there
-    does.
+    Where a stretch is divided at a graze, rounding decides in which half each of its meshes is found.
     """
     specials = [*first]
     for special in second:
@@ -251,7 +250,9 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
 
 
 def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Return the grazes between two points as events, and whether they are ambiguous."""
+    """Return the grazes between two points as events, and whether some cannot be told apart, see
+    grazes().
+    """
     graze_list, is_ambiguous = grazes(period_map, first, second)
     return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in graze_list], is_ambiguous
 
@@ -298,7 +299,9 @@ def _value_at_rank(values: Array, rank: int, default: float = 0.0) -> float:
 
 
 def _turns(first: BranchPoint, second: BranchPoint) -> bool:
-    """Whether the branch turns back in its parameter between two points."""
+    """Whether the tangent's parameter component changes its sign between two points: the branch has a
+    fold there.
+    """
     a, b = first.tangent[-1], second.tangent[-1]
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 

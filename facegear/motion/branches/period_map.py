@@ -90,7 +90,9 @@ class PeriodMap:
 
     @property
     def step_tolerance(self) -> float:
-        """Local error of a step over the length scale."""
+        """Local error of an integration step over the length scale: STEPS times the tolerance, at least
+        FINEST.
+        """
         return max(STEPS * self.tolerance, FINEST)
 
     def over(self, period: int) -> "PeriodMap":

@@ -90,7 +90,7 @@ class BranchPoint:
 
     @cached_property
     def multipliers(self) -> ComplexArray:
-        """Floquet multipliers (2 n - k,), largest first, without those of k neutral directions."""
+        """Floquet multipliers (2 n - k,), largest modulus first, without those of k neutral directions."""
         values = without_neutral(np.linalg.eigvals(self.linear.matrix), self.linear.neutral.shape[1])
         return values[by_modulus(values)]
 

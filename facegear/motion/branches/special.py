@@ -221,8 +221,10 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _widest_turn(distance: float) -> float:
-    """Return the angle, rad, over which a cubic errs by half the distance of the multipliers from the unit
-    circle.
+    """Return the largest angle, rad, that multipliers may turn in a stretch that is interpolated.
+
+    There a cubic errs by half the `distance` of the multipliers from the unit circle; it is kept from
+    NARROWEST_TURN to WIDEST_TURN.
     """
     if distance < UNDAMPED:
         return WIDEST_TURN

@@ -40,7 +40,7 @@ class UnfollowedMotion:
     period : int
         Number of mesh periods.
     value : float
-        The parameter at it.
+        Parameter at it, in its unit.
     origin : str
         Where it was met.
     reason : str
@@ -132,7 +132,11 @@ class _Search:
     visited_points: list[tuple[int, float]] = field(default_factory=list)
 
     def follow(self, period_map: PeriodMap, point: BranchPoint, origin: str) -> None:
-        """Follow a motion that lies on no branch, and all that leaves its branch."""
+        """Follow the branch of a motion, unless it lies on a known one, and all branches that leave it,
+        and so on.
+
+        `origin` says where the motion was found.
+        """
         if self._is_known(period_map.period, point):
             return
         branch = self._try_branch(

@@ -180,7 +180,7 @@ def doubled_branch(period_map: PeriodMap, special: Special, run: ContinuationSet
     direction = _direction(special.point.linear.matrix, -1.0)
 
     def is_doubled(point: BranchPoint) -> bool:
-        """Whether the motion differs from itself a period later, other than the branch that doubles."""
+        """Whether an orbit changes over the single period: it does not on the branch that doubles."""
         change = np.linalg.norm(period_map.gap(point.z, point.u))
         return bool(change > LEFT * np.linalg.norm(point.x - special.point.x))
 

@@ -122,7 +122,7 @@ class Integrator:
 
     @property
     def edges(self) -> tuple[Array, Array]:
-        """Lower and upper edge of each row, (m,), m; of a mesh that never opens lower >= upper."""
+        """Lower and upper edge (m,) of each row, m: open between them, never open if lower >= upper."""
         return lower_edges(self.system), self.system.upper
 
     @property

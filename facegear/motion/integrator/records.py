@@ -155,9 +155,11 @@ class RunResult:
     samples : (periods * samples, n) array
         Coordinates at evenly spaced phases, from the start of each period.
     fractions : (3, m) array
-        Fraction of the time open, on the drive and on the back flank; only with samples, batches or tangents.
+        Fractions of the time that each row is open, on its drive flank, on its back flank; zeros without
+        samples, batches or tangents.
     divergence : float
-        Integral of the trace of the equations' matrix; only with tangents.
+        Integral over the phase of the trace of the linearised equations' matrix: the logarithm of the
+        determinant of the monodromy matrix. Only with tangents.
     growth : (periods,) array
         Logarithm of the growth of the one tangent in each period, if it was requested.
     steps : int

@@ -37,7 +37,8 @@ class System:
     Attributes
     ----------
     mesh_jacobian : (m, n)
-        Matrix G: deflections d = G y - e. Positive d beyond `upper` presses the drive flanks.
+        Matrix G: deflections d = G y - e; d above `upper` presses a contact in, d below `lower` on its
+        back side.
     omega_squared, damping : (n,)
         Stiffness (squared bearing frequency, 1/s2) and damping (1/s) of each coordinate, for unit mass.
     mesh_damping, lower, upper : (m,)
@@ -98,12 +99,14 @@ class System:
 
     @property
     def contacts(self) -> int:
-        """Number of the m rows that are meshes or flanks, and not of rings."""
+        """Number of the m rows that are contacts: meshes or flanks, without the three rows of each
+        bearing with clearance.
+        """
         return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
 
     @property
     def pairs(self) -> int:
-        """Number of meshes with two flanks."""
+        """Number of meshes if each has two flanks, a pair of contacts; 0 if a mesh is one contact."""
         return self.contacts // 2 if self.two_flanks else 0
 
 

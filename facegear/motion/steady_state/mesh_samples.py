@@ -81,8 +81,9 @@ def errors_of_period(system: System, per_period: int) -> Array:
 
 @kept_by_content(2)
 def _errors(series: Array, kind: Integers, per_period: int) -> Array:
-    """Return the errors (per_period, contacts), m, of contacts of given kinds at the samples of a mesh
-    period.
+    """Return the errors (per_period, contacts), m, at evenly spaced samples of a mesh period.
+
+    `series` (kinds, 2, harmonics + 1) and `kind` (contacts,) are as System.error and error_kind.
     """
     return np.asarray(stacked_values(series, np.arange(per_period) / per_period)[:, kind])
 

@@ -126,7 +126,8 @@ class Cycle:
         return np.asarray(axes[:, : np.count_nonzero(sizes > SAME_MOTION)])
 
     def _advanced(self, shift: float, slope: bool = False) -> Array:
-        """Samples, or their derivatives by phase, a shift (in mesh periods) later.
+        """Return the samples (K, n), or their derivatives by phase (1/rad), a shift (in mesh periods)
+        later.
 
         They are exact for waves that the samples resolve.
         """
@@ -317,7 +318,7 @@ def _comes_first(numbers: Array, reference: Array) -> bool:
 
 
 def _cycle_of(response: SteadyState) -> Cycle:
-    """Return the cycle of a steady state."""
+    """Return the samples of a periodic response as a cycle."""
     return Cycle(response.system, response.coordinates, response.per_period, response.orbit)
 
 

@@ -54,7 +54,9 @@ class Orbit:
 
     @property
     def is_off_circle(self) -> Mask:
-        """Mask (2 n,) of the multipliers off the unit circle: all but those of neutral directions."""
+        """Mask (2 n,) of the multipliers off the unit circle by more than UNIT_TOLERANCE; the others
+        count as neutral.
+        """
         return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property

@@ -80,12 +80,16 @@ class SteadyState:
 
     @property
     def label(self) -> str:
-        """`period-n` or the class of motion."""
+        """Label of the motion: `period-n` with n mesh periods, or the class of a motion that is not
+        periodic.
+        """
         return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
 
     @property
     def multipliers(self) -> ComplexArray | None:
-        """Floquet multipliers (2 n,) of the orbit."""
+        """Floquet multipliers (2 n,) of the orbit, largest modulus first; None where no orbit was
+        refined.
+        """
         return None if self.orbit is None else self.orbit.multipliers
 
     @property
@@ -135,12 +139,14 @@ class SteadyState:
 
     @property
     def moments(self) -> Moments:
-        """Mean, RMS, extremes of the mesh deflections, m, exact for the steps' polynomials."""
+        """Mean, RMS, extremes of the mesh deflections, m, each (meshes,); exact for the polynomials of
+        the steps.
+        """
         return self.averages.meshes(self.motion is Motion.PERIODIC)
 
     @property
     def mean_forces(self) -> Array:
-        """Mean and mean magnitude (2, meshes) of the elastic mesh forces, N."""
+        """Means of the elastic mesh forces, then of their magnitudes, (2, meshes), N."""
         return self.averages.force
 
     @property

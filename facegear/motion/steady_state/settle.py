@@ -263,7 +263,9 @@ class SettlingRun:
                 return self._in_noise(near) or self._result(0, near.residual, None)
 
     def _match_known_orbit(self) -> SettlingResult | None:
-        """Return the result for the orbit that was known before, if the run has come to it."""
+        """Return the result with a state of the orbit that was known before, if the run has come to it,
+        else None.
+        """
         if self.known_orbit is None or not len(self.ends):
             return None
         match = self.known_orbit.attracting_state(self.integrator, self.ends)
@@ -377,10 +379,11 @@ class SettlingRun:
         return distance <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
 
     def _stands_on(self, orbit: Orbit, near: BestReturn) -> bool:
-        """Whether a run has come to rest where the orbit attracts it.
+        """Whether the run has come to rest at an orbit found by Newton's method, so that no more returns
+        must be seen.
 
-        The orbit is found in the steps that tangents need. The run's own steps may keep it one step's error
-        aside.
+        The orbit is found in the steps that tangents need. The run's own steps may keep it one step's
+        error aside.
         """
         left = near.residual / max(1.0 - abs(orbit.multipliers[0]), 1e-3)
         whole = near.period % orbit.period == 0

@@ -34,7 +34,9 @@ from facegear.motion.symmetries import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A machine with its reduction and equations of motion, to be used at many speeds."""
+    """A machine with its reduced coordinates and equations of motion, to be used at many speeds; see
+    build_model().
+    """
 
     machine: Machine
     reduction: Reduction
@@ -102,7 +104,9 @@ def _excited(machine: Machine, basis: Array, system: System) -> System:
 
 @lru_cache(maxsize=8)
 def _cached_reduction(machine: Machine) -> Reduction:
-    """Reduce a machine's coordinates; equal machines share the result."""
+    """Reduce the coordinates of a machine without errors; the result is shared by equal machines and must
+    not be changed.
+    """
     return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 
@@ -198,7 +202,7 @@ class StartedRun:
     system : System
         Equations of motion.
     first_watch : FirstWatch
-        What the first watch has shown.
+        The run up to where it settled or was first taken not to settle.
     speed_rpm : float
         Pinion speed.
     start_symmetries : tuple of Symmetry
@@ -222,7 +226,9 @@ class StartedRun:
 
     @property
     def motion_symmetries(self) -> tuple[Symmetry, ...]:
-        """Symmetries of the motion that the run hands on."""
+        """Symmetries that map the motion the run hands on to itself; all of the system where it has not
+        settled.
+        """
         return held_after(self.first_watch, self.system)
 
     def follow(self) -> RunPlan[SteadyState]:

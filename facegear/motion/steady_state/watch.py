@@ -38,7 +38,8 @@ class WatchResult:
     periods_run : int
         Number of mesh periods run.
     unsteady_periods : int
-        Number of unsteady mesh periods when the run was first taken not to close.
+        Number of unsteady mesh periods, see count_unsteady_periods(), when the run was first taken not to
+        close.
     """
 
     settling_result: SettlingResult
@@ -80,7 +81,7 @@ class FirstWatch:
 
     @property
     def state(self) -> Array:
-        """Current state (2, n) of the run: on the motion on which it has settled, or on its way."""
+        """State by phase (2, n): on the motion in which the run has settled, else where the run is."""
         return self.settling_result.state if self.watch_result is None else self.watch_result.window.ends[-1]
 
 

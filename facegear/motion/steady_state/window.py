@@ -21,7 +21,8 @@ FINENESS = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """A window of whole mesh periods.
+    """Samples and averages of a motion over a window of whole mesh periods, with n coordinates and m
+    rows.
 
     Attributes
     ----------
@@ -36,7 +37,7 @@ class Window:
     averages : Averages
         Exact averages.
     growth : (periods,) array
-        Logarithmic growth of a disturbance in each period, if one was run.
+        Natural logarithm of the growth of a disturbance in each period, if one was run.
     tangent : (1, 2, n) array
         The disturbance at the end.
     """
@@ -163,7 +164,7 @@ NEUTRAL = 2e-3
 
 
 class Growth(StrEnum):
-    """Behaviour of a small disturbance."""
+    """Behaviour of a small disturbance of a motion, by the sign of the largest Lyapunov exponent."""
 
     GROWS = "grows"
     NEUTRAL = "neutral"

@@ -126,7 +126,7 @@ def machine_follower(model: Model, settings: Settings) -> "OrbitFollower":
 
 @dataclass(frozen=True, eq=False)
 class OrbitFollower:
-    """Follows periodic orbits over a speed.
+    """Follows stable periodic orbits from speed to speed; the speed may be any parameter of a system.
 
     Attributes
     ----------

@@ -88,10 +88,11 @@ class Jump:
     mesh : int
         Mesh in which the relative change is largest.
     largest : int
-        The sweep's position next to the jump with the larger response.
+        Index in the sweep of the one of the two speeds beside the jump whose response is larger in that
+        mesh.
     error : float
-        How far the speed of the change may lie from the bracket, rpm: its width where the motion before it
-        was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
+        Distance that the speed of the change may have from the bracket, rpm: its width where the motion
+        before it was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
     is_followed : bool
         Whether the motion before it was followed as an orbit until it was lost.
     """
@@ -105,7 +106,9 @@ class Jump:
 
     @property
     def kind(self) -> JumpKind:
-        """Kind of the change, by the classes of motion on both sides."""
+        """Kind of the change: IRREGULAR if a side is not periodic, else JUMP if the motion was followed,
+        else STEP.
+        """
         if self.before.period == 0 or self.after.period == 0:
             return JumpKind.IRREGULAR
         return JumpKind.JUMP if self.is_followed else JumpKind.STEP

@@ -41,7 +41,7 @@ class Piece:
     largest_pull : (P, M) array
         Largest force by which the damper of a contact pulls its flanks together, N.
     open_fraction, drive_fraction, back_fraction : (P, M) array
-        Fractions of the time.
+        Fractions of the time that a mesh is open, on its drive flank, and on its back flank.
     past_law_fraction : (P, M) array
         Fraction of the samples at which a mesh is compressed beyond the last level of its law.
     translation_* : (P, B, 3) array
@@ -58,11 +58,12 @@ class Piece:
     spectrum : (P, M, orders) array
         Amplitude spectra of the mesh deflections, m.
     modal : (P, modes) array
-        RMS velocity scale omega * coordinate of every natural mode without mean, sqrt(J).
+        RMS of omega times the coordinate of every natural mode, without mean: the root of twice its
+        potential energy, sqrt(J).
     modal_order : (P,) array
         Multiple of the mesh frequency at which the strongest mode moves most.
     displacement, velocity : (P, n) array
-        State at the end.
+        State at the end of the run at each speed, by time.
     """
 
     speeds: Array
@@ -116,7 +117,9 @@ class Piece:
 
     @property
     def labels(self) -> list[str]:
-        """`period-n` or the class of motion at each speed."""
+        """Label of the motion at each speed: `period-n`, or its class where it is not periodic, see
+        Motion.
+        """
         return [
             f"period-{period}" if period else str(motion)
             for motion, period in zip(self.motion, self.period, strict=True)
@@ -257,7 +260,7 @@ def carried_over(
     step: Callable[[], None] = lambda: None,
     start_symmetries: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
-    """Run plans for the motions at speeds in the given order, each started from the last state of the one
+    """Run plans for the motions at speeds in the given order, each started from the state of the one
     before.
 
     The state that a motion hands on is known after its first watch. Where the motion has settled, this is a

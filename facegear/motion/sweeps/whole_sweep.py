@@ -113,8 +113,7 @@ class Seam:
     """Junction of two chunks, and the number of speeds that had to be run again from the end of the first.
 
     `rerun` is that number. With kind `irregular`, both are in irregular motion there, whose state is
-    never forgotten; the chunks agree in
-    RMS only.
+    never forgotten; the chunks agree in RMS only.
     """
 
     direction: str
