@@ -35,7 +35,7 @@ BEARING_COLUMNS = (
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
-    """Compute the force of every body on its bearing at each sample, see bearing_forces().
+    """Compute the force of every body on its bearing at each sample of a response, see bearing_forces().
 
     Parameters
     ----------

@@ -143,12 +143,13 @@ class SweepPlan:
         direction : str
             "up" or "down".
         number : int
-            Number of the chunk.
+            Number of the chunk from 0 to chunks - 1, in the order of running.
 
         Returns
         -------
         tuple of array
-            Speeds of the overlap (overlap,) and the chunk's own speeds (points,), rpm.
+            Speeds of the overlap (up to overlap,) and the chunk's own speeds (about points / chunks,),
+            rpm.
         """
         speeds = self.speeds if direction == "up" else self.speeds[::-1]
         bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)

@@ -70,7 +70,8 @@ def shows_a_period(response: pd.DataFrame, summary: pd.DataFrame) -> bool:
 
 
 def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
-    """Mean friction loss of each mesh, for a machine with friction.
+    """Compute the mean friction loss of each mesh over the table: pinion speed * base radius * mean
+    friction force.
 
     Parameters
     ----------

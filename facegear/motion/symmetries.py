@@ -99,8 +99,8 @@ class _Search:
     """Search by backtracking for signed permutations of the contacts that leave the system unchanged.
 
     Coordinates of equal bearing frequency and damping make one group; `gram` (contacts, contacts, groups)
-    has the products of the Jacobian's rows in each. A signed permutation of the rows of
-    the Jacobian comes from an orthogonal map among the coordinates if it leaves the Gram matrix of each group
+    has the products of the Jacobian's rows in each. A signed permutation of the rows of the Jacobian
+    comes from an orthogonal map among the coordinates if it leaves the Gram matrix of each group
     unchanged.
     """
 

@@ -187,7 +187,7 @@ class SampledTrack:
 
 
 def track(response: SteadyState, factor: int = 1) -> Track:
-    """Make the track of a response.
+    """Make the track of a response: through its samples, by Fourier series if it is periodic.
 
     Parameters
     ----------

@@ -201,7 +201,8 @@ def solve_on_locus(
     forward: Array,
     sharp: bool = False,
 ) -> LocusPoint:
-    """Find the point of the locus next to a guess with row . (x - guess) = 0.
+    """Find the point of the locus next to a guess with row . (x - guess) = 0, by Newton's method on
+    Borders.test().
 
     The change of the test function along the orbits comes from differences of the matrix. It is computed once
     for each point, and again where the test does not fall.

@@ -95,7 +95,7 @@ def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
     -------
     DataFrame
         Columns branch, period, parameter, direction, start, kind, value, margin. `kind` is `none` where the
-        range ends first; `margin` is value less start.
+        range ends first; `margin` is value less start, in the parameter's unit.
     """
     rows = [
         {

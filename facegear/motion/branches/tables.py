@@ -279,7 +279,8 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried. `image_of` is
+        Columns branch, image_of, period, points (their number), from_rpm, to_rpm (extremes of speed),
+        first_end, last_end (reasons, see BranchEnd), tried (Branch.failed_attempts). `image_of` is
         the branch of which it is the image under a symmetry of the machine, or empty.
     """
     rows = [

@@ -124,7 +124,8 @@ class Coupling:
         return Coupling(self.dampers, gyroscopic, circulatory, self.centrifugal / ratio**2)
 
     def velocity_terms(self, speed: float) -> Array:
-        """Matrix D / W + G that acts on derivatives by the phase W t.
+        """Return the matrix D / W + G that acts on derivatives by the phase W t, in the equations by
+        phase.
 
         Parameters
         ----------
@@ -139,7 +140,7 @@ class Coupling:
         return self.dampers / speed + self.gyroscopic
 
     def displacement_terms(self, speed: float) -> Array:
-        """Matrix N / W + P that acts on displacements over the phase W t.
+        """Return the matrix N / W + P that acts on displacements, in the equations by the phase W t.
 
         Parameters
         ----------
@@ -271,7 +272,7 @@ def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduction:
 
 
 def together(mesh_jacobian: Array, coupling: Coupling) -> Integers:
-    """Order coupled coordinates for the kernels.
+    """Order coupled coordinates so that the compiled kernels use their vectors of LANES coordinates well.
 
     Coordinates that the same meshes feel are side by side, the most first. Among them, those that are coupled
     are side by side, first those that fill whole vectors of the kernels.

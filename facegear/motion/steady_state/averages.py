@@ -98,7 +98,8 @@ class Averages:
         return self.square - 2.0 * off * self.deflection + off**2
 
     def meshes(self, periodic: bool) -> Moments:
-        """Moments of the mesh deflections.
+        """Compute the moments of the mesh deflections over the whole window, with intervals from its
+        batches.
 
         Parameters
         ----------
@@ -150,7 +151,7 @@ class Averages:
         return np.sqrt(variance + mean**2), ac_rms, _root_interval(variances, ac_rms, periodic)
 
     def part(self, batches: slice) -> "Averages":
-        """Averages over some of the batches; extremes and forces stay those of all.
+        """Return the averages over some of the batches; extremes and forces stay those of all.
 
         Parameters
         ----------

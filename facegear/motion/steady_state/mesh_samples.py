@@ -62,7 +62,10 @@ def each_deflection(system: System, coordinates: Array, per_period: int) -> Arra
 
 
 def errors_of_period(system: System, per_period: int) -> Array:
-    """Transmission errors of the contacts over a mesh period; the array is shared and must not be changed.
+    """Return the transmission errors of the contacts at even samples of a mesh period, which starts at
+    phase 0.
+
+    The array is shared and must not be changed.
 
     Parameters
     ----------
@@ -91,7 +94,8 @@ def _errors(series: Array, kind: Integers, per_period: int) -> Array:
 def by_mesh(system: System, contact_deflections: Array) -> Array:
     """Compute the deflection of each mesh from those of its contacts.
 
-    With two flanks it is half the difference of their heights above their edges.
+    With two flanks it is half the difference of the heights of drive and back flank above their edges, so
+    that it counts from the middle of the backlash and is positive towards the drive flank.
 
     Parameters
     ----------
@@ -112,7 +116,8 @@ def by_mesh(system: System, contact_deflections: Array) -> Array:
 
 
 def mesh_forces(system: System, contact_deflections: Array, per_period: int) -> Array:
-    """Compute the elastic force of each mesh; with two flanks the difference of both.
+    """Compute the elastic force of each mesh, positive on the drive flank; with two flanks drive less
+    back flank.
 
     Parameters
     ----------
@@ -184,7 +189,8 @@ def largest_mesh_forces(system: System, contact_deflections: Array, per_period: 
 
 
 def past_law(system: System, contact_deflections: Array) -> Array:
-    """Fraction of the samples at which a mesh is compressed beyond the last level of its law.
+    """Compute the fraction of the samples at which a mesh is compressed beyond the last level of its
+    law's table.
 
     With two flanks it is the larger fraction of both.
 
@@ -208,7 +214,7 @@ def past_law(system: System, contact_deflections: Array) -> Array:
 
 
 def mesh_fractions(system: System, fractions: Array, contact_deflections: Array) -> Array:
-    """Fraction of the time that each mesh is open, on its drive flank and on its back flank.
+    """Compute the fractions of the time that each mesh is open, on its drive flank and on its back flank.
 
     Time with both flanks wedged counts on both, so that the three may add up to more than one. A flank that
     is never compressed by more than rounding is open.

@@ -159,7 +159,7 @@ def change(integrator: Integrator, first: Array, second: Array) -> float:
 
 
 def largest(integrator: Integrator, gaps: Array) -> Array:
-    """Largest component of each of several differences of states, measured as by change().
+    """Return the largest weighted component of each of several differences of states, see change().
 
     Parameters
     ----------
@@ -179,7 +179,8 @@ def largest(integrator: Integrator, gaps: Array) -> Array:
 
 
 def changes(integrator: Integrator, ends: Array, longest: int) -> Array:
-    """change() of the last state of a run from the states one to `longest` periods before it.
+    """Return the change() of the last state of a run from each of the states 1 to `longest` periods
+    before it.
 
     Parameters
     ----------

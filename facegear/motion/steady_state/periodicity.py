@@ -127,7 +127,8 @@ def often_seems_to_close(integrator: Integrator, ends: Array, settings: Settings
 
 
 def trend(integrator: Integrator, ends: Array, period: int) -> float:
-    """Largest change over a period in the last TREND periods, over that in the TREND before.
+    """Return the largest change over a period in the last TREND mesh periods, over that in the TREND
+    before them.
 
     Parameters
     ----------

@@ -58,8 +58,8 @@ def find_disagreement(
     Returns
     -------
     RunPlan of tuple or None
-        Computation that returns where the start that disagrees has come to and its motion; None if the class
-        holds.
+        Generator for requests.alone() or side_by_side(), which returns where the start that disagrees has
+        come to and its motion; None if the class holds.
     """
     first, motion = run.settling_result, run.motion
     if not settings.second_looks or motion is Motion.NOT_SETTLED:
@@ -167,7 +167,7 @@ def withdraw_class(
     Returns
     -------
     RunPlan of WatchResult
-        Computation that returns the result.
+        Generator for requests.alone() or side_by_side(), which returns the result.
     """
     periods_run = run.periods_run + look.periods_run
     if not run.settling_result.period:

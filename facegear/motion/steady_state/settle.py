@@ -193,7 +193,7 @@ def settling(
     Returns
     -------
     RunPlan of SettlingResult
-        Computation that returns where the run came to rest.
+        Generator for requests.alone() or side_by_side(), which returns where the run came to rest.
     """
     return SettlingRun(integrator, state, settings, ends, known_orbit).settle()
 
@@ -239,7 +239,7 @@ class SettlingRun:
         Returns
         -------
         RunPlan of SettlingResult
-            Computation that returns where the run came to rest.
+            Generator for requests.alone() or side_by_side(), which returns where the run came to rest.
         """
         while True:
             yield from self._advance()

@@ -43,7 +43,8 @@ class Model:
     system: System
 
     def displacements(self, response: SteadyState) -> Array:
-        """Displacements of all bodies in a response; the free rigid rotation is left out.
+        """Compute the displacements along all coordinates of the linear model (LinearModel.labels),
+        without the free rigid rotation.
 
         Parameters
         ----------
@@ -111,7 +112,7 @@ def _cached_reduction(machine: Machine) -> Reduction:
 
 
 def static_start(model: Model) -> State:
-    """State at rest in the static equilibrium with mean stiffness.
+    """Return the state at rest in the static equilibrium with mean stiffness, in reduced coordinates.
 
     Parameters
     ----------
@@ -188,7 +189,7 @@ def simulating(
     Returns
     -------
     RunPlan of SteadyState
-        Computation that returns the response.
+        Generator for requests.alone() or side_by_side(), which returns the response.
     """
     return (yield from (yield from start_run(model, speed_rpm, settings, start, guide)).follow())
 
@@ -239,7 +240,7 @@ class StartedRun:
         Returns
         -------
         RunPlan of SteadyState
-            Computation that returns the response.
+            Generator for requests.alone() or side_by_side(), which returns the response.
         """
         with _naming(self.speed_rpm):
             response = yield from _steady(self.system, self.first_watch)
@@ -291,7 +292,7 @@ def start_run(
     Returns
     -------
     RunPlan of StartedRun
-        Computation that returns the run after its first watch.
+        Generator for requests.alone() or side_by_side(), which returns the run after its first watch.
     """
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)

@@ -134,7 +134,7 @@ ORDERS = np.arange(SEGMENT * MAX_ORDER + 1) / SEGMENT
 
 
 def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Array]:
-    """Amplitude spectrum of whole periods; Hann-weighted unless periodic.
+    """Compute the one-sided amplitude spectrum of whole periods by FFT; Hann-weighted unless periodic.
 
     A sine of amplitude A at an order of the grid has the amplitude A (the mean stays the mean).
 
@@ -163,7 +163,10 @@ def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Ar
 
 
 def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
-    """Amplitudes on the fixed grid ORDERS, RMS-averaged over segments (Welch 1967).
+    """Compute the amplitudes on the fixed grid ORDERS, RMS-averaged over segments of SEGMENT periods
+    (Welch 1967).
+
+    The entry at order 0 is the magnitude of the mean.
 
     Lines of a period that does not divide SEGMENT go to the nearest order of the grid.
 

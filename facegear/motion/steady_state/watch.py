@@ -111,7 +111,7 @@ def begin(
     Returns
     -------
     RunPlan of FirstWatch
-        Computation that returns the first watch.
+        Generator for requests.alone() or side_by_side(), which returns the first watch.
     """
     settling_result = None if guide is None else settle_by_guide(integrator, state, guide)
     settling_result = settling_result or (
@@ -139,7 +139,7 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
     Returns
     -------
     RunPlan of WatchResult
-        Computation that returns the result.
+        Generator for requests.alone() or side_by_side(), which returns the result.
     """
     if first_watch.watch_result is not None:
         return first_watch.watch_result
@@ -194,8 +194,8 @@ def classify_run(
     Returns
     -------
     RunPlan of tuple
-        Computation that returns the class of motion, NOT_SETTLED if it stays open, and the largest Lyapunov
-        exponent.
+        Generator for requests.alone() or side_by_side(), which returns the class of motion, NOT_SETTLED
+        if it stays open, and the largest Lyapunov exponent.
     """
     exponent = yield from largest_exponent(integrator, run.state, settings)
     return _class(integrator, run, exponent, exponent.window, settings), exponent

@@ -98,7 +98,7 @@ def window(
     Returns
     -------
     RunPlan of Window
-        Computation that returns the window.
+        Generator for requests.alone() or side_by_side(), which returns the window.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
     Returns
     -------
     RunPlan of Exponent
-        Computation that returns the exponent.
+        Generator for requests.alone() or side_by_side(), which returns the exponent.
     """
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())

@@ -45,7 +45,7 @@ def distance(first: Array, second: Array) -> float:
 
 
 def image_distance(first: Array, second: Array, images: Integers) -> float:
-    """Smallest distance() of one set of AC RMS from the images of another.
+    """Return the smallest distance() of one set of AC RMS from the mirror images of another.
 
     Parameters
     ----------

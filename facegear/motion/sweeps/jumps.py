@@ -92,7 +92,8 @@ class Jump:
         mesh.
     error : float
         Distance that the speed of the change may have from the bracket, rpm: its width where the motion
-        before it was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
+        before it was followed as an orbit, else the sweep's step, since a run leaves irregular motion by
+        chance.
     is_followed : bool
         Whether the motion before it was followed as an orbit until it was lost.
     """
@@ -176,7 +177,8 @@ def refine(
     Returns
     -------
     RunPlan of Jump or None
-        Computation that returns the jump; None if the motion is not lost.
+        Generator for requests.alone() or side_by_side(), which returns the jump; None if the motion is
+        not lost.
     """
     before, end = (_stored_side(piece, i) for i in (position, position + 1))
     step = abs(end.speed - before.speed)
@@ -315,9 +317,9 @@ def bracket(
     Returns
     -------
     RunPlan of tuple
-        Computation that returns the responses at both ends of the last interval; each new run starts from
-        the state on the `before` side, and belongs to the side that its AC RMS (meshes,) in m are nearer
-        to.
+        Generator for requests.alone() or side_by_side(), which returns the responses at both ends of the
+        last interval; each new run starts from the state on the `before` side, and belongs to the side
+        that its AC RMS (meshes,) in m are nearer to.
     """
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)

@@ -191,7 +191,8 @@ def join_pieces(pieces: list[Piece]) -> Piece:
 def run_chunk(
     model: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
 ) -> tuple[Piece, Piece]:
-    """Run the overlap and the own speeds of a chunk; the first speed is started from static equilibrium.
+    """Run the overlap and the chunk's own speeds, see SweepPlan.chunk(); the first starts from static
+    equilibrium.
 
     Parameters
     ----------
@@ -202,7 +203,7 @@ def run_chunk(
     direction : str
         "up" or "down".
     number : int
-        Number of the chunk.
+        Number of the chunk, from 0.
     step : callable
         Called without arguments after each speed.
 
@@ -302,7 +303,7 @@ def carried_over(
 
 
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
-    """Reduce responses to the numbers that a sweep stores.
+    """Reduce responses at several speeds to the numbers that a sweep stores, an array a quantity.
 
     Parameters
     ----------

@@ -54,14 +54,15 @@ class Resonance:
 
 
 def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonance:
-    """Find the resonance to which a response belongs; modes of one frequency count together.
+    """Find the natural mode that holds most of a response's energy, of all modes or groups of equal
+    frequency.
 
     Parameters
     ----------
     piece : Piece
         Results of a sweep.
     position : int
-        Position of the speed.
+        Index of the speed in the piece.
     modes : Modes
         Natural modes of the machine.
     teeth : int
@@ -94,7 +95,7 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
     Returns
     -------
     list of tuple
-        Quantity (deflection, x, y or z), mesh or body, position, AC RMS in m.
+        Quantity (deflection, x, y or z), index of the mesh or body, index of the speed, AC RMS in m.
     """
     rows = []
     for mesh, curve in enumerate(piece.deflection_ac_rms.T):
@@ -171,8 +172,9 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
-        symmetry_broken. The unit is part of the quantity.
+        One row for each quantity, body or mesh (`machine` for quantities of the whole), and speed,
+        ascending. Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic,
+        after_irregular, symmetry_broken. The unit is part of the quantity.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     curves: list[tuple[str, str, np.ndarray]] = []
