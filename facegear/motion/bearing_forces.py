@@ -149,7 +149,8 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     Returns
     -------
     (K, bearings, 5) array
-        Forces, N, and moments, N m.
+        Forces along x, y, z, N, and moments tilt_x, tilt_y, N m, of the shaft on each bearing, in the
+        order of bearing_names(); none without a drive line.
     """
     line = model.machine.drive_line
     if line is None:

@@ -187,7 +187,7 @@ def located_by_cycle(values: Array, wraps: bool) -> Array:
     Parameters
     ----------
     values : (cycles, positions, columns)
-        Samples at even distances in time.
+        Samples at even distances in time, `positions` in each cycle, any unit.
     wraps
         As in located_extremes().
 
@@ -206,7 +206,7 @@ def located_by_cycle(values: Array, wraps: bool) -> Array:
 
 
 def finer(values: Array, factor: int, wraps: bool) -> Array:
-    """Interpolate even samples by a cubic spline at a multiple of their instants.
+    """Interpolate even samples by a cubic spline at `factor` times as many instants.
 
     Where two neighbouring samples do not differ in sign, the values between have no other sign: a contact
     that is open at both is open between them. Without wrapping the last value is repeated after the last

@@ -128,6 +128,10 @@ def follow(
 def slow_polynomials(model: Model, cycles: Integers) -> Array:
     """Compute the slow part of every flank's error in each mesh cycle, as polynomials of the mesh phase.
 
+    Runouts, pitch deviations and errors of single teeth turn slowly. Each polynomial goes through the
+    values of slow_errors() at NODES Chebyshev points, both ends of the cycle included; the phase counts
+    from the cycle's start.
+
     Parameters
     ----------
     model : Model
@@ -138,7 +142,7 @@ def slow_polynomials(model: Model, cycles: Integers) -> Array:
     Returns
     -------
     (cycles, NODES, flanks) array
-        Coefficients by ascending powers of the phase, m/rad^power.
+        Coefficients by ascending powers of the phase, m/rad^power; drive flanks first.
     """
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     values = slow_errors(model.machine, (cycles[:, None] + nodes).ravel())

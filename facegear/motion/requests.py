@@ -131,7 +131,7 @@ def run_stretches(
     Parameters
     ----------
     stretches : sequence of RunRequest
-        The stretches, in any order.
+        The requests, in any order.
     last_periods : int, optional
         Number of last periods whose end states are returned; all if None.
     fewest : int
@@ -257,7 +257,7 @@ def alone(plan: RunPlan[T]) -> T:
     Parameters
     ----------
     plan : RunPlan
-        Computation.
+        Generator that yields RunRequests, receives their results, and returns a value.
 
     Returns
     -------
@@ -281,7 +281,7 @@ def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
     Parameters
     ----------
     plans : sequence of RunPlan
-        Computations.
+        Generators that yield RunRequests, receive their results, and return a value.
 
     Returns
     -------

@@ -82,7 +82,9 @@ def split_loads(forces: Array, rounding: float, loads: Array) -> None:
 
 
 class Track(Protocol):
-    """A motion of n coordinates at K evenly spaced instants."""
+    """A motion of n coordinates y at K evenly spaced instants, from which linear functions of y and dy/dt
+    are taken.
+    """
 
     @property
     def count(self) -> int:
@@ -281,7 +283,9 @@ class DenseMotion:
 
     @property
     def flank_loads(self) -> Array:
-        """Elastic forces (2 meshes, K), N, of the drive flanks, then of the back flanks, none negative."""
+        """Magnitudes (2 meshes, K), N, of the elastic forces of the drive flanks, then of the back
+        flanks; rounding is left out.
+        """
         loads = np.empty((2 * len(self.forces), self.track.count))
         split_loads(self.forces, NO_LOAD, loads)
         return loads

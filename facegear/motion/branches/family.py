@@ -99,7 +99,8 @@ def speed_family(model: Model) -> Family:
 
 
 def machine_plane(model: Model, second: str) -> Plane:
-    """Return the systems of a machine over its pinion speed and a factor on another parameter.
+    """Return the systems of a machine over its pinion speed and a factor on another parameter, see
+    scale_parameter().
 
     Parameters
     ----------

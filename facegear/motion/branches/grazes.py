@@ -139,7 +139,7 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     Returns
     -------
     float or None
-        Position as a fraction of the chord, or None.
+        Position as a fraction of the chord at which to divide the stretch, or None.
     """
     # An extremum may come over an edge and go back within one step, or two of them may be born beyond it:
     # both ends then have the same contacts, and only the extrema between them tell.

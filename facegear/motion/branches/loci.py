@@ -26,7 +26,9 @@ STRAIGHT = 0.9
 
 
 class Corner(StrEnum):
-    """Special points of a locus."""
+    """Special points of a locus: a cusp, where two folds meet, or an extremum of the second parameter
+    along it.
+    """
 
     CUSP = "cusp"
     TURN = "turn in the second parameter"

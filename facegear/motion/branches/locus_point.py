@@ -52,7 +52,7 @@ class LocusProblem:
         Returns
         -------
         PeriodMap
-            Map over the first parameter.
+            Map whose parameter u is the logarithm of the plane's first parameter.
         """
         return replace(self.period_map, family=self.plane.line(float(np.exp(v))))
 
@@ -163,7 +163,7 @@ def reverse_tangent(point: LocusPoint) -> LocusPoint:
     Returns
     -------
     LocusPoint
-        Point whose tangent has the other sign.
+        Point whose tangent has the other sign, to follow the locus the other way.
     """
     return replace(point, tangent=-point.tangent)
 
@@ -214,11 +214,12 @@ def solve_on_locus(
     guess : (2 n + 2,) array
         Weighted state and logarithms of both parameters, dimensionless.
     row : (2 n + 2,) array
-        Condition that selects the point, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the point is sought, dimensionless.
     borders : Borders
-        Borders of a point nearby.
+        Borders of a point nearby; they fix the test function.
     gradient : (2 n + 2,) array or None
-        Change of the test function at a point nearby, dimensionless.
+        LocusPoint.gradient of a point nearby, with which Newton's method begins; None: computed at the
+        guess.
     forward : (2 n + 2,) array
         Direction along which the tangent points, dimensionless.
     sharp : bool

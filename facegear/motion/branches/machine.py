@@ -102,7 +102,8 @@ def first_orbit(model: Model, plan: BranchPlan) -> BranchPoint:
 def random_starts(
     model: Model, plan: BranchPlan, speed_rpm: float, step: Callable[[], None] = lambda: None
 ) -> list[SettledMotion]:
-    """Run random starts around rest at a speed and return the motions on which they end.
+    """Run random starts around the static equilibrium at a speed, see scattered(), and return the motions
+    on which they end.
 
     Parameters
     ----------
@@ -217,7 +218,7 @@ def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[
     Returns
     -------
     list of StabilityLimit
-        Limits upwards and downwards in each parameter.
+        Limits upwards and downwards in speed (rpm) and in the factor on all torques.
     """
     speed = plan.nominal_rpm
     across = machine_plane(model, "torque").across(speed)

@@ -63,7 +63,7 @@ def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Branc
     Returns
     -------
     list of tuple
-        Number of the branch, and the orbit.
+        Index of the branch, and the orbit, one for each passage.
     """
     return [
         (number, point)
@@ -92,7 +92,7 @@ def stability_limits(
     Returns
     -------
     list of StabilityLimit
-        Limits sorted by branch.
+        Limits sorted by branch; up, then down, in each family.
     """
     originals = [(n, point) for n, point in stable_at(branches, value) if branches[n].image_of is None]
     limits = []
@@ -152,7 +152,8 @@ def coexistence_ranges(branches: Sequence[Branch]) -> list[tuple[float, float, t
     Returns
     -------
     list of tuple
-        Both ends in the parameter's unit, and the number of a branch for each motion.
+        Both ends in the parameter's unit, and the index of a branch for each stable motion (repeated if
+        it has several).
     """
     edges = sorted(
         {

@@ -272,7 +272,7 @@ def _shortest_period(period_map: PeriodMap, point: BranchPoint, period: int) -> 
 
 
 def nearest_branch(motion: SweptMotion, branches: Sequence[Branch]) -> tuple[int | None, float]:
-    """Find the branch on which a motion lies.
+    """Find the branch on which the orbit of a motion lies: the nearest, if it is closer than ON.
 
     Parameters
     ----------
@@ -284,7 +284,7 @@ def nearest_branch(motion: SweptMotion, branches: Sequence[Branch]) -> tuple[int
     Returns
     -------
     int or None
-        Number of the branch; None if there is none.
+        Index of the branch; None if there is none.
     float
         Distance of the motion's orbit from the branch in length scales, dimensionless; NaN if there is none.
     """

@@ -160,7 +160,7 @@ def bordered_matrix(linear: Linear, row: Array) -> Array:
     linear : Linear
         Linearised map with the matrix M, the slope P_u and k neutral directions V.
     row : (2 n + 1,) array
-        Bordering condition, dimensionless.
+        Left side of the condition, as in correct(), dimensionless.
 
     Returns
     -------
@@ -193,7 +193,7 @@ def correct(
     guess : (2 n + 1,) array
         Weighted state and logarithm of the parameter, dimensionless.
     row : (2 n + 1,) array
-        Condition that selects the orbit, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the orbit is sought, dimensionless.
     linear : Linear, optional
         Linearised map near the guess.
     farthest : float
@@ -400,7 +400,7 @@ def solve_point(
     guess : (2 n + 1,) array
         Weighted state and logarithm of the parameter, dimensionless.
     row : (2 n + 1,) array
-        Condition that selects the orbit, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the orbit is sought, dimensionless.
     forward : (2 n + 1,) array
         Direction along which the tangent points, dimensionless.
     linear : Linear, optional

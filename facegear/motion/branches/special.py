@@ -21,7 +21,13 @@ from facegear.motion.branches.segment import Segment
 
 
 class Kind(StrEnum):
-    """Kinds of special points."""
+    """Kinds of special points of a branch.
+
+    FOLD: the parameter turns back. DOUBLING: a multiplier passes -1. TORUS: a complex pair passes the
+    unit circle. BRANCH: another branch crosses, a multiplier is 1. GRAZE: an extremum of a deflection
+    touches an edge of the backlash. NEUTRAL: a body loses its last contact or gets one, and the number of
+    neutral directions changes.
+    """
 
     FOLD = "fold"
     DOUBLING = "period doubling"

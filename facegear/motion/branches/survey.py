@@ -101,7 +101,7 @@ def survey(
     max_branches : int
         Largest number of branches that are followed, without their images.
     progress : callable
-        Called with a line about each branch.
+        Called with one line of text about each branch.
 
     Returns
     -------

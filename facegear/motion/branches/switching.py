@@ -71,7 +71,7 @@ def image_branch(branch: Branch, symmetry: Symmetry) -> Branch:
     Returns
     -------
     Branch
-        Image with the same number of points.
+        Image with the same number of points; its `image_of` is still that of the branch.
 
     Raises
     ------
@@ -262,7 +262,8 @@ def _first_stretch(
 
 
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
-    """Follow the branch through the orbit next to a state at a value of the parameter.
+    """Find the orbit next to a state at a value of the parameter by Newton's method, and follow its
+    branch both ways.
 
     Parameters
     ----------

@@ -228,7 +228,7 @@ class Integrator:
         Parameters
         ----------
         state : (2, n) array
-            State by phase, m and m/rad.
+            State by phase at the start of a mesh period, m and m/rad.
 
         Returns
         -------

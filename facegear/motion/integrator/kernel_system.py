@@ -33,7 +33,7 @@ def pack(system: System, frequency: float, tolerance: float) -> motion.Machine:
     Returns
     -------
     motion.Machine
-        The system at this frequency.
+        The system at this frequency, with the bound fastest() that limits its steps.
     """
     return motion.machine(packed_system(system), frequency, tolerance, fastest(system, frequency))
 
@@ -165,7 +165,7 @@ def make_runner(system: System, order: int, in_lanes: bool = False) -> motion.Ru
     Parameters
     ----------
     system : System
-        A system of the structure.
+        A system of the structure: one with the same sizes and kind of law.
     order : int
         Order of the Taylor steps.
     in_lanes : bool

@@ -242,7 +242,8 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
 
 
 def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width of a mean from the correlation of successive batches alone.
+    """Compute the half-width of the confidence interval of a mean from the correlation of successive
+    batches alone.
 
     It serves for a few batches, such as the halves of a run: how many independent ones they are worth is not
     known, and an interval that allows for any number would hide every change.
@@ -264,7 +265,8 @@ def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array
 
 
 def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width of a mean from independent batches, by Student's distribution.
+    """Compute the half-width of the confidence interval of a mean of independent batches, by Student's
+    distribution.
 
     Parameters
     ----------

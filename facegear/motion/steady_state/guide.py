@@ -100,7 +100,8 @@ def guide_of(integrator: Integrator, orbit: Orbit | None) -> Guide | None:
     Returns
     -------
     Guide or None
-        None where the orbit has more than one mesh period or attracts too weakly.
+        None where there is no orbit, it has more than one mesh period, or its largest multiplier is
+        MAX_MULTIPLIER or more.
     """
     fit = orbit is not None and orbit.period == 1 and abs(orbit.multipliers[0]) < MAX_MULTIPLIER
     return Guide(integrator, orbit) if orbit is not None and fit else None
@@ -124,7 +125,8 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
     Returns
     -------
     SettlingResult or None
-        None if the run does not settle near the guide, or this is uncertain.
+        Where the run settles, without an Orbit and its multipliers. None if the run does not settle near
+        the guide, or this is uncertain.
     """
     try:
         return _follow_guide(integrator, state, guide)

@@ -47,7 +47,7 @@ class Cycle:
     orbit: Orbit | None
 
     def image(self, symmetry: Symmetry) -> Array:
-        """Samples of the image of the motion.
+        """Return the samples of the image of the motion under a symmetry, at the same instants.
 
         Parameters
         ----------
@@ -62,14 +62,15 @@ class Cycle:
         return self._advanced(symmetry.shift) @ symmetry.matrix.T
 
     def image_state(self, symmetry: Symmetry, state: Array) -> Array:
-        """Image of the state with which the samples begin.
+        """Return the image's state at the instant at which the samples begin.
 
         Parameters
         ----------
         symmetry : Symmetry
             Symmetry of the system.
         state : (2, n) array
-            State by phase, m and m/rad.
+            The motion's own state by phase at that instant, used if the symmetry has no shift; m and
+            m/rad.
 
         Returns
         -------
@@ -276,7 +277,7 @@ def start_on_image(response: SteadyState, start_symmetries: Sequence[Symmetry]) 
     response : SteadyState
         Response.
     start_symmetries : sequence of Symmetry
-        Symmetries of the start.
+        Symmetries of the start; only images under these are considered.
 
     Returns
     -------

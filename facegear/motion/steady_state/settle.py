@@ -140,7 +140,7 @@ def settle(
     ends: Array | None = None,
     known_orbit: KnownOrbit | None = None,
 ) -> SettlingResult:
-    """Run a single system until it settles, see settling().
+    """Run a single system until it settles, see settling(); no other run is integrated beside it.
 
     Parameters
     ----------

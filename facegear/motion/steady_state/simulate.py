@@ -60,7 +60,8 @@ class Model:
 
 
 def build_model(machine: Machine) -> Model:
-    """Reduce a machine once for all speeds.
+    """Reduce a machine's coordinates, without truncation, and make its equations of motion, once for all
+    speeds.
 
     Parameters
     ----------
@@ -136,7 +137,10 @@ def simulate(
     start: State | None = None,
     guide: Guide | None = None,
 ) -> SteadyState:
-    """Compute the steady state at a pinion speed, from `start` or from static equilibrium.
+    """Compute the steady state of a machine at a pinion speed, from `start` or from static equilibrium.
+
+    The machine is integrated until its motion repeats, and the periodic orbit is refined by Newton's
+    method. A motion that does not repeat is classified by its largest Lyapunov exponent.
 
     Parameters
     ----------
@@ -321,7 +325,7 @@ def _naming(speed_rpm: float) -> Iterator[None]:
 def steady_state(
     system: System, frequency: float, settings: Settings, start: State, guide: Guide | None = None
 ) -> SteadyState:
-    """Compute the steady state of any system.
+    """Compute the steady state of any system: run it until it settles, else classify its motion.
 
     If a class of motion does not come out again from starts a little aside, it is withdrawn. Then the motion
     is not settled, and `looks` says why.

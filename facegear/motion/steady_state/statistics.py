@@ -95,7 +95,7 @@ def drifts(averages: Averages, by_period: Array) -> bool:
     averages : Averages
         Averages over the batches of the run.
     by_period : (periods, columns) array
-        RMS in each period, m.
+        RMS of each mesh in each mesh period, without the mean, m.
 
     Returns
     -------

@@ -34,7 +34,8 @@ class WatchResult:
     exponent : Exponent or None
         Largest Lyapunov exponent of a motion that is not periodic.
     window : Window
-        Stretch on which the motion is measured.
+        Samples and averages from which the motion is measured: one period of it, or the window of the
+        exponent.
     periods_run : int
         Number of mesh periods run.
     unsteady_periods : int
@@ -70,7 +71,8 @@ class FirstWatch:
     settling_result : SettlingResult
         Where the run settled, if it did.
     watch_result : WatchResult or None
-        The result where the run has settled and nothing is left to watch.
+        The result where the run has settled and nothing is left to watch; None where it has not settled
+        or came to a known orbit.
     """
 
     integrator: Integrator

@@ -198,7 +198,7 @@ class Exponent:
 
 
 def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> RunPlan[Exponent]:
-    """Compute the largest exponent by one tangent vector over the settings' window.
+    """Compute the largest Lyapunov exponent by one tangent vector over the settings' window.
 
     The vector is scaled back to length one after every period (Parker and Chua 1989). While the exponent
     cannot be distinguished from zero the run is doubled, window by window, up to `extensions` times.

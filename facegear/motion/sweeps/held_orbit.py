@@ -154,12 +154,12 @@ class OrbitFollower:
         Returns
         -------
         HeldOrbit or None
-            None if there is no such orbit.
+            None if there is no stable orbit with this period near the state.
         """
         return self._stable(speed, state, period) if period else None
 
     def until_lost(self, orbit: HeldOrbit, end: float, resolution: float) -> tuple[HeldOrbit, float | None]:
-        """Follow an orbit to a speed, or until it is lost.
+        """Follow an orbit to a speed, or until it ends, loses its stability or jumps to another orbit.
 
         Parameters
         ----------

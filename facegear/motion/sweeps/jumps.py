@@ -348,7 +348,8 @@ def abrupt(before: JumpSide, after: JumpSide, images: Integers) -> bool:
     Returns
     -------
     bool
-        True if the distance of their AC RMS is above MIN_CHANGE, or three times that if neither is periodic.
+        True if the AC RMS of a mesh differs by more than the fraction MIN_CHANGE, or three times that if
+        neither is periodic. Mirror images count as one.
     """
     regular = before.period > 0 or after.period > 0
     apart = image_distance(before.ac_rms, after.ac_rms, images)

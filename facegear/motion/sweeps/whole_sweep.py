@@ -101,7 +101,9 @@ def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
 
 
 class SeamKind(StrEnum):
-    """Agreement of two chunks where they meet."""
+    """Agreement of two chunks where they meet: equal periodic motions, run again, or irregular motions of
+    equal AC RMS.
+    """
 
     AGREEMENT = "agreed"
     RERUN = "rerun"
@@ -196,7 +198,7 @@ def assemble(
     Piece
         Results at all speeds.
     list of Seam
-        Seams between the chunks.
+        Seams between the chunks, with the number of speeds run again at each.
     """
     whole = chunks[0][1]
     seams: list[Seam] = []
