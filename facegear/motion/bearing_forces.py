@@ -35,7 +35,7 @@ BEARING_COLUMNS = (
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
-    """Compute the force of every body on its bearing at each sample, see bearing_forces().
+    """Compute the force of every body on its bearing at each sample of a response, see bearing_forces().
 
     Parameters
     ----------
@@ -53,7 +53,10 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
 
 
 def bearing_forces(model: Model, motion: Track) -> Array:
-    """Compute the force of every body on its bearing: springs, their damping of equation (21), and dampers.
+    """Compute the force of every body on its bearing: springs, their damping of equation (21), and
+    dampers.
+
+    It is positive along the body's displacement; the bearing pushes back with the opposite force.
 
     The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
     clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
@@ -87,9 +90,10 @@ def bearing_forces(model: Model, motion: Track) -> Array:
 class _BearingMaps(NamedTuple):
     """Matrices that map reduced displacement and velocity to bearing forces.
 
-    `alone` (3 bodies,) marks the components on which no ring acts. The columns of displacement and velocity
-    (n, columns) give the forces of those, then displacement and velocity of each body in a ring along x and
-    y.
+    `alone` (3 bodies,) marks the components x, y, z of bodies that have a bearing without clearance. The
+    columns (n, columns) for displacement and velocity, multiplied and added, give the forces of these
+    components, N, then displacements and then velocities along x and y of each body in a bearing with
+    clearance (ring).
     """
 
     alone: Mask
@@ -99,7 +103,10 @@ class _BearingMaps(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
-    """Return the matrices from reduced displacement and velocity to bearing forces."""
+    """Return the matrices from reduced displacement and velocity to bearing forces, see _BearingMaps.
+
+    The result is cached and must not be changed.
+    """
     linear = machine.linear
     displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
     in_rings = np.zeros(linear.translations.shape, dtype=bool)
@@ -118,7 +125,8 @@ def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Inte
     """Return matrices (n, coordinates) from reduced displacement and velocity to forces on springs and
     dampers.
 
-    The forces and moments act along the given coordinates.
+    Displacement @ first + velocity @ second gives the force (N) or moment (N m) along each of the given
+    coordinates of the linear model.
     """
     basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]
@@ -141,7 +149,8 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     Returns
     -------
     (K, bearings, 5) array
-        Forces, N, and moments, N m.
+        Forces along x, y, z, N, and moments tilt_x, tilt_y, N m, of the shaft on each bearing, in the
+        order of bearing_names(); none without a drive line.
     """
     line = model.machine.drive_line
     if line is None:
@@ -218,5 +227,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
 
 
 def _with_radial(forces: Array) -> Array:
-    """Forces (K, bodies, 3) with their radial magnitude as a fourth."""
+    """Return forces (K, bodies, 3) along x, y, z, with hypot(x, y) appended as a fourth, (K, bodies, 4),
+    N.
+    """
     return np.concatenate([forces, np.hypot(forces[..., :1], forces[..., 1:2])], axis=-1)

@@ -34,7 +34,9 @@ def local_maxima(curve: Array) -> tuple[Integers, Array]:
 
 
 def _valley(curve: Array) -> float:
-    """Return the smallest value that precedes the first value larger than the curve's first one."""
+    """Return the smallest value of a curve (n,) before its first value that is larger than curve[0], else
+    of all.
+    """
     beyond = ~(curve <= curve[0])
     return float(curve[: beyond.argmax() if beyond.any() else curve.size].min())
 
@@ -68,7 +70,9 @@ def by_modulus(multipliers: ComplexArray) -> Integers:
 
 
 def _rank(values: Array, near: float) -> Integers:
-    """Rank (n,) of each value among those that lie further apart than `near`."""
+    """Return the rank (n,) of each value, from 0 for the smallest; values within `near` of the next
+    smaller share its rank.
+    """
     ascending = np.argsort(values)
     rank = np.zeros(len(values), dtype=int)
     rank[ascending[1:]] = np.cumsum(np.diff(values[ascending]) > near)
@@ -96,20 +100,21 @@ def located_extremes(values: Array, wraps: bool) -> tuple[Array, Array]:
     Parameters
     ----------
     values : (K, columns)
-        Samples at even distances in time.
+        Samples at even distances in time, any unit.
     wraps
         Whether the first sample follows the last, as those of whole periods of a periodic motion do.
 
     Returns
     -------
     minimum, maximum : (columns,)
-        In the unit of the values.
+        Smallest and largest values, in the unit of the values.
     """
     return -_located_maxima(-values, wraps), _located_maxima(values, wraps)
 
 
 def max_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
-    """Find the samples whose neighbours' parabolas rise most.
+    """Find the samples of each column at which the parabola through a sample and its neighbours rises
+    highest.
 
     Parameters
     ----------
@@ -134,7 +139,9 @@ def max_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
 
 
 def values_around(values: Array, rows: Integers) -> Array:
-    """Evaluate the polynomials from one sample before each row to one after it.
+    """Evaluate polynomials through 2 REACH + 1 samples from one sample before each row to one after it.
+
+    The samples are taken as periodic: after the last comes the first.
 
     Parameters
     ----------
@@ -153,7 +160,8 @@ def values_around(values: Array, rows: Integers) -> Array:
 
 
 def top_of(fine: Array) -> Array:
-    """Largest value of fine even samples, by the parabola through the largest three.
+    """Return the largest value of fine even samples along the first axis, by the parabola through the
+    largest three.
 
     Parameters
     ----------
@@ -179,7 +187,7 @@ def located_by_cycle(values: Array, wraps: bool) -> Array:
     Parameters
     ----------
     values : (cycles, positions, columns)
-        Samples at even distances in time.
+        Samples at even distances in time, `positions` in each cycle, any unit.
     wraps
         As in located_extremes().
 
@@ -198,7 +206,7 @@ def located_by_cycle(values: Array, wraps: bool) -> Array:
 
 
 def finer(values: Array, factor: int, wraps: bool) -> Array:
-    """Interpolate even samples by a cubic spline at a multiple of their instants.
+    """Interpolate even samples by a cubic spline at `factor` times as many instants.
 
     Where two neighbouring samples do not differ in sign, the values between have no other sign: a contact
     that is open at both is open between them. Without wrapping the last value is repeated after the last
@@ -232,7 +240,9 @@ def finer(values: Array, factor: int, wraps: bool) -> Array:
 
 
 def _located_maxima(values: Array, wraps: bool) -> Array:
-    """Return the largest value of each column between the samples, by local polynomials."""
+    """Return the largest value (columns,) of each column of samples (K, columns), located between them by
+    polynomials.
+    """
     largest = np.asarray(values.max(axis=0))
     if len(values) <= 2 * REACH:
         return largest
@@ -241,11 +251,12 @@ def _located_maxima(values: Array, wraps: bool) -> Array:
 
 
 def _parabolas(values: Array, rows: Integers, wraps: bool) -> tuple[Array, Mask]:
-    """Height of the parabola through each sample of `rows` (R, columns) and its neighbours, and whether it is
-    a peak.
+    """Return the height of the parabola through each sample of `rows` (R, columns) and its neighbours,
+    and whether it is a peak.
 
-    The curve must bend down at the sample and at its higher neighbour, between which the peak lies. It does
-    not where a contact opens and its force stays zero.
+    Both are (R, columns). The curve must bend down at the sample and at its higher neighbour, between
+    which the peak lies. It does not where a contact opens and its force stays zero. Without `wraps`
+    samples near the ends are no peaks.
     """
     count = len(values)
 
@@ -263,7 +274,9 @@ def _parabolas(values: Array, rows: Integers, wraps: bool) -> tuple[Array, Mask]
 
 
 def _tops(values: Array, rows: Integers) -> Array:
-    """Largest value (R, columns) of each column's polynomial beside each sample of `rows` (R, columns)."""
+    """Return the largest value (R, columns) of the polynomial through samples (K, columns) around each of
+    `rows` (R, columns).
+    """
     steps = np.arange(-REACH, REACH + 1)
     near = np.stack([np.take_along_axis(values, (rows + step) % len(values), axis=0) for step in steps])
     return top_of(np.tensordot(_POLYNOMIAL, near, 1))

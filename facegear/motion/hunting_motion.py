@@ -37,7 +37,7 @@ class FollowedMotion:
     Attributes
     ----------
     cycles : (K,) array
-        Mesh cycles of the reference.
+        Time of each instant, in mesh cycles of the reference, counted as `first` in follow().
     positions : int
         Number of instants in each mesh cycle.
     coordinates : (K, n) array
@@ -128,6 +128,10 @@ def follow(
 def slow_polynomials(model: Model, cycles: Integers) -> Array:
     """Compute the slow part of every flank's error in each mesh cycle, as polynomials of the mesh phase.
 
+    Runouts, pitch deviations and errors of single teeth turn slowly. Each polynomial goes through the
+    values of slow_errors() at NODES Chebyshev points, both ends of the cycle included; the phase counts
+    from the cycle's start.
+
     Parameters
     ----------
     model : Model
@@ -138,7 +142,7 @@ def slow_polynomials(model: Model, cycles: Integers) -> Array:
     Returns
     -------
     (cycles, NODES, flanks) array
-        Coefficients by ascending powers of the phase, m/rad^power.
+        Coefficients by ascending powers of the phase, m/rad^power; drive flanks first.
     """
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     values = slow_errors(model.machine, (cycles[:, None] + nodes).ravel())
@@ -149,8 +153,10 @@ def slow_polynomials(model: Model, cycles: Integers) -> Array:
 def _run(
     model: Model, integrator: Integrator, state: Array, cycles: Integers, positions: int
 ) -> tuple[Array, Array]:
-    """Integrate mesh cycles from a state (2, n); return samples (cycles * positions, n) and the
-    last state.
+    """Integrate mesh cycles from a state (2, n); return samples (cycles * positions, n) and the last
+    state (2, n).
+
+    In each of the `cycles`, given by number, the slow errors enter as slow_polynomials().
     """
     samples = np.zeros((cycles.size, positions, integrator.size))
     for cycle_samples, drift in zip(samples, slow_polynomials(model, cycles), strict=True):
@@ -160,7 +166,11 @@ def _run(
 
 
 def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions: int) -> Array:
-    """Return the forces of all flanks, N, from reduced coordinates over mesh cycles."""
+    """Return the elastic forces of all flanks (K, flanks), N, drive flanks first, over mesh cycles given
+    by number.
+
+    `coordinates` (K, n) are samples of the motion, `positions` of them in each cycle.
+    """
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stack_series(error_series(machine)), at) + slow_errors(machine, at)
@@ -169,12 +179,16 @@ def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions:
 
 
 def _instants(cycles: Integers, positions: int) -> Array:
-    """Return the instants of mesh cycles, in cycles."""
+    """Return the instants (cycles * positions,) in mesh cycles, `positions` of them evenly spaced from
+    each cycle's start.
+    """
     return (cycles[:, None] + np.arange(positions) / positions).ravel()
 
 
 def _apart(model: Model, start: State) -> State:
-    """Start away from equilibrium, in a direction to which every mesh responds."""
+    """Return a state APART length scales away from a start at most, in a direction to which every mesh
+    responds.
+    """
     reach = np.abs(model.reduction.mesh_jacobian).max()
     way = np.sign(np.cos(1.0 + np.arange(start.displacement.size)))
     return replace(start, displacement=start.displacement + APART * model.system.scale / reach * way)

@@ -21,7 +21,7 @@ class Motion(StrEnum):
 
 @dataclass(frozen=True)
 class Look:
-    """Motion to which one start has come.
+    """Motion in which the run from one start has ended, to compare it with other starts.
 
     Attributes
     ----------
@@ -52,9 +52,9 @@ class Settings:
     tolerance
         Local error of a step over the system's length scale.
     order
-        Of the Taylor steps, None: from the tolerance.
+        Order of the Taylor steps; None: from the tolerance, see taylor_order.
     dwell
-        Periods before anything is judged.
+        Periods that are run before it is examined whether the motion repeats.
     settle
         Periods for which a motion is watched before it counts as not periodic.
     longest_period
@@ -64,17 +64,17 @@ class Settings:
     window
         Periods over which a motion that is not periodic is measured, and before that its exponent.
     samples
-        Least number per period; more are taken where the motion needs them.
+        Least number of samples per period; more are taken where the motion needs them.
     refine
         Find periodic orbits to rounding by Newton's method, with Floquet multipliers.
     extensions
-        Times that the window of an undecided exponent is doubled, and that a motion is watched again whose
-        exponent and window do not agree.
+        Number of times that the window is doubled while the exponent is undecided, and number of times
+        that a motion is watched again whose exponent and window do not agree.
     second_looks
-        Other starts that a class of motion which is in doubt must come out from again.
+        Number of other starts from which a class of motion in doubt must result again; 0 for no check.
     aside
-        How far they lie from the first, over the length scale. A state carried over from an irregular motion
-        may be any of its states.
+        Distance of these starts from the first, over the length scale. A state carried over from an
+        irregular motion may be any of its states.
     """
 
     tolerance: float = 1e-8
@@ -114,9 +114,11 @@ SLOWEST_RPM = 1.0
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """Evenly spaced speeds from first to last, run in each direction in chunks.
+    """Evenly spaced pinion speeds from first to last, rpm, run in each direction ("up", "down") in
+    chunks.
 
-    A chunk first runs `overlap` speeds of the one before it, until the state has forgotten its start.
+    A chunk first runs the last `overlap` speeds of the chunk before it, until the state has forgotten its
+    start. Jumps are bracketed to `jump_resolution_rpm`; `settings` are those of every run.
     """
 
     first_rpm: float
@@ -141,12 +143,13 @@ class SweepPlan:
         direction : str
             "up" or "down".
         number : int
-            Number of the chunk.
+            Number of the chunk from 0 to chunks - 1, in the order of running.
 
         Returns
         -------
         tuple of array
-            Speeds of the overlap (overlap,) and the chunk's own speeds (points,), rpm.
+            Speeds of the overlap (up to overlap,) and the chunk's own speeds (about points / chunks,),
+            rpm.
         """
         speeds = self.speeds if direction == "up" else self.speeds[::-1]
         bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)
@@ -158,8 +161,8 @@ class SweepPlan:
 class JumpRange:
     """Range in which jumps are sought.
 
-    It reaches `range_rpm` to both sides, in steps of at most `step_rpm`. A jump is bracketed to
-    `resolution_rpm`; `settings` are those of the sweeps.
+    It reaches `range_rpm` to both sides of a speed, in steps of at most `step_rpm`. A jump is bracketed
+    to `resolution_rpm`; `settings` are those of the sweeps.
     """
 
     range_rpm: float

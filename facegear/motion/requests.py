@@ -23,7 +23,8 @@ from facegear.motion.integrator.records import RunResult
 
 @dataclass(frozen=True, eq=False)
 class RunRequest:
-    """Whole mesh periods from a state (2, n) by phase, with the options of `Integrator.run`.
+    """Request to run whole mesh periods from a state (2, n) by phase, with the options of
+    `Integrator.run`.
 
     Without batches, samples or tangents there are no fractions of time in contact.
     """
@@ -65,7 +66,9 @@ class RunRequest:
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """Options that must be the same for machines that run side by side."""
+        """Options that must be equal for requests that run side by side: numbers of tangents, samples and
+        batches, and growth.
+        """
         return len(self.disturbances), self.samples, self.batches, self.growth
 
 
@@ -122,12 +125,13 @@ def run_many(
 def run_stretches(
     stretches: Sequence[RunRequest], last_periods: int | None = None, fewest: int = FEWEST
 ) -> list[RunResult | NotConverged]:
-    """Run stretches of many machines, side by side where they share a structure and a request.
+    """Run many requests, called stretches, side by side where they share a structure of system and a kind
+    of request.
 
     Parameters
     ----------
     stretches : sequence of RunRequest
-        The stretches, in any order.
+        The requests, in any order.
     last_periods : int, optional
         Number of last periods whose end states are returned; all if None.
     fewest : int
@@ -151,7 +155,9 @@ def run_stretches(
 
 
 def _groups(stretches: Sequence[RunRequest]) -> list[list[int]]:
-    """Return groups of requests, by number, that may be integrated side by side."""
+    """Return groups of requests, by index, that may be integrated side by side: of equal structure, order
+    and kind.
+    """
     structures: list[motion.System] = []
     structure_of: dict[motion.System, int] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
@@ -167,10 +173,12 @@ def _groups(stretches: Sequence[RunRequest]) -> list[list[int]]:
 
 
 def _in_lanes(periods: Mapping[int, int], fewest: int) -> list[int]:
-    """Choose which machines of one structure run in lanes, from the mesh periods of each; longest first.
+    """Choose which machines of one structure run side by side in lanes; return their keys, longest run
+    first.
 
-    Lanes take as long for one machine as for all: time is counted as if each period of theirs cost as much as
-    `fewest` of a single run. The longest run singly where the other lanes would wait for them.
+    `periods` are the mesh periods of each machine by key. Lanes take as long for one machine as for all:
+    each period of theirs counts as `fewest` periods of a single run. The longest run singly where the
+    other lanes would wait for them.
     """
     order = sorted(periods, key=lambda number: -periods[number])
     lengths = [periods[number] for number in order]
@@ -190,7 +198,9 @@ def _busy(lengths: Sequence[int], lanes: int) -> int:
 
 
 def _alone(stretch: RunRequest, last_periods: int | None) -> RunResult | NotConverged:
-    """Run one request by itself; return its failure if it does not converge."""
+    """Run one request by itself, and return its result with the last end states only, or the error with
+    which it failed.
+    """
     try:
         run = stretch.run()
     except NotConverged as failure:
@@ -203,7 +213,9 @@ def _alone(stretch: RunRequest, last_periods: int | None) -> RunResult | NotConv
 def _side_by_side(
     stretches: Sequence[RunRequest], last_periods: int | None
 ) -> list[RunResult | NotConverged]:
-    """Run stretches of one structure and request in lanes."""
+    """Run requests of one structure and kind in lanes; return the result of each, or the error with which
+    it failed.
+    """
     first, periods = stretches[0], [stretch.periods for stretch in stretches]
     integrators = [stretch.integrator for stretch in stretches]
     log = run_machines(
@@ -222,7 +234,7 @@ def _side_by_side(
 
 
 def _result(log: motion.Log, number: int, stretch: RunRequest) -> RunResult | NotConverged:
-    """Return the result of one machine of a run, or the error that it failed with."""
+    """Return the result of the machine with index `number` in a run, or the error that it failed with."""
     try:
         return result_of(log, number, stretch.integrator, stretch.periods)
     except NotConverged as failure:
@@ -240,12 +252,12 @@ A NotConverged of a run is raised where it was requested.
 
 
 def alone(plan: RunPlan[T]) -> T:
-    """Run a single plan to completion.
+    """Run a single plan to completion: integrate each run that it requests and send it the result.
 
     Parameters
     ----------
     plan : RunPlan
-        Computation.
+        Generator that yields RunRequests, receives their results, and returns a value.
 
     Returns
     -------
@@ -269,7 +281,7 @@ def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
     Parameters
     ----------
     plans : sequence of RunPlan
-        Computations.
+        Generators that yield RunRequests, receive their results, and return a value.
 
     Returns
     -------
@@ -296,7 +308,9 @@ def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
 
 
 def _largest_group(requests: Mapping[int, RunRequest]) -> list[int]:
-    """Return the numbers of the run plans in the largest group whose requests may be integrated together."""
+    """Return the keys of the run plans whose pending requests are of the most frequent kind, see
+    RunRequest.kind.
+    """
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     for number, stretch in requests.items():
         groups[stretch.kind].append(number)
@@ -304,7 +318,10 @@ def _largest_group(requests: Mapping[int, RunRequest]) -> list[int]:
 
 
 def _next_of(plan: RunPlan[T], answer: RunResult | NotConverged | None) -> RunRequest:
-    """Return the run that a plan requests after an answer. Raises StopIteration at its end."""
+    """Send a plan the answer to its last request (None: start it) and return the next request.
+
+    An error as answer is raised inside the plan. Raises StopIteration with the plan's value at its end.
+    """
     if isinstance(answer, NotConverged):
         return plan.throw(answer)
     return next(plan) if answer is None else plan.send(answer)

@@ -30,7 +30,8 @@ def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
+        Columns mesh_cycle, time_s, mesh (name), deflection_um, elastic_force_n; all instants of the first
+        mesh, then of the next.
     """
     count = min(response.periods, SHOWN_PERIODS) * response.per_period
     cycles = response.phases[:count]
@@ -69,7 +70,8 @@ def shows_a_period(response: pd.DataFrame, summary: pd.DataFrame) -> bool:
 
 
 def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
-    """Mean friction loss of each mesh, for a machine with friction.
+    """Compute the mean friction loss of each mesh over the table: pinion speed * base radius * mean
+    friction force.
 
     Parameters
     ----------
@@ -225,6 +227,8 @@ def law_loads_table(
 
 
 def _largest(table: pd.DataFrame, quantity: str, mesh: object) -> float:
-    """Return the largest value of a quantity of a mesh in a table, 0 where the table has none."""
+    """Return the largest `value` of a quantity of a mesh (`body_or_mesh`) in a table like sweep_table(),
+    0 where there is none.
+    """
     values = table.loc[(table["quantity"] == quantity) & (table["body_or_mesh"] == mesh), "value"]
     return float(values.max()) if len(values) else 0.0

@@ -28,7 +28,9 @@ have as many.
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
-    """The map y(s) -> matrix y(s + shift) of motions over the phase s, in mesh periods.
+    """The map y(s) -> matrix y(s + shift) of motions y (n,), with the phase s in mesh periods.
+
+    The image's deflection of contact i is signs[i] times that of contact contacts[i], a shift later.
 
     Attributes
     ----------
@@ -56,7 +58,8 @@ class Symmetry:
 
 @lru_cache(maxsize=16)
 def symmetries(system: System) -> tuple[Symmetry, ...]:
-    """Find all symmetries of a system but the identity.
+    """Find all symmetries of a system but the identity, by backtracking over permutations of its
+    contacts.
 
     Parameters
     ----------
@@ -95,8 +98,9 @@ def mesh_images(system: System) -> Integers:
 class _Search:
     """Search by backtracking for signed permutations of the contacts that leave the system unchanged.
 
-    The coordinates with one bearing frequency and damping make one group. A signed permutation of the rows of
-    the Jacobian comes from an orthogonal map among the coordinates if it leaves the Gram matrix of each group
+    Coordinates of equal bearing frequency and damping make one group; `gram` (contacts, contacts, groups)
+    has the products of the Jacobian's rows in each. A signed permutation of the rows of the Jacobian
+    comes from an orthogonal map among the coordinates if it leaves the Gram matrix of each group
     unchanged.
     """
 
@@ -126,11 +130,11 @@ class _Search:
         return tuple(symmetries_so_far)
 
     def _shifts(self) -> list[float]:
-        """Return shifts, in mesh periods, at which the first contact that varies over the period may equal
-        another contact.
+        """Return the shifts in time, in mesh periods, at which a symmetry may exist; 0 is always among
+        them.
 
-        The variation may be in its force law, or in its error or load, both up to their sign. Where nothing
-        varies, only the shift 0 is examined.
+        They make the first contact that varies over the period equal to another one: in its force law, or
+        in its error or load, both up to their sign. Where nothing varies, only the shift 0 is examined.
         """
         forces = self._forces(0.0)[0]
         signed_signals = np.stack([self._errors(0.0), self._load(0.0)[0] @ self.jacobian.T])
@@ -149,20 +153,30 @@ class _Search:
         return [0.0]
 
     def _forces(self, shift: float) -> tuple[Array, Array]:
-        """Return forces (amounts, phases, contacts) at deflections above the upper edge and below the lower
-        edge.
+        """Return the contact forces at PHASES phases a shift later, pressed in by `amounts`, each
+        (amounts, phases, contacts), N.
+
+        First those above the upper edge, then those below the lower edge. There is one amount within each
+        piece of the law.
         """
         amounts = np.broadcast_to(self.amounts[:, None, None], (self.amounts.size, PHASES, self.count))
         force = self.system.law.force
         return force(self.cycles + shift, amounts), force(self.cycles + shift, -amounts)
 
     def _errors(self, shift: float) -> Array:
-        """Return the transmission errors e (phases, contacts), m, shifted by a part of the mesh period."""
+        """Return the transmission errors e (phases, contacts), m, at PHASES phases of a mesh period, a
+        shift (mesh periods) later.
+        """
         values = stacked_values(self.system.error, self.cycles + shift)
         return values[:, self.system.error_kind[: self.count]]
 
     def _compatible(self, shift: float) -> AnyArray:
-        """Whether contact i may take over contact j with a sign, (contacts, contacts, 2): +, then -."""
+        """Return whether contact i may take over the deflection of contact j with a sign, a mask
+        (contacts, contacts, 2).
+
+        The last axis is the sign: +, then -. Damping, edges, errors, and force laws a shift later must
+        agree.
+        """
         system, count = self.system, self.count
         lower, upper = system.lower[:count], system.upper[:count]
         fits = np.ones((count, count, 2), dtype=bool)
@@ -184,8 +198,11 @@ class _Search:
         return fits
 
     def _permutations(self, shift: float) -> Iterator[tuple[Integers, Array]]:
-        """Yield permutations of the contacts with signs, (contacts,) each, that keep laws, meshes and Gram
-        matrices.
+        """Yield permutations of the contacts, as indices, with signs, (contacts,) each, that may be
+        symmetries with a shift.
+
+        They keep force laws, errors, pairs of flanks and Gram matrices; loads and bearings are still to
+        be checked.
         """
         fits = self._compatible(shift)
         yield from self._extend([], [], fits)
@@ -193,7 +210,11 @@ class _Search:
     def _extend(
         self, contacts: list[int], signs: list[float], fits: AnyArray
     ) -> Iterator[tuple[Integers, Array]]:
-        """Yield permutations of contacts with signs that extend a partial one and keep the equations."""
+        """Yield all permutations with signs that begin with given contacts and signs and keep the Gram
+        matrices.
+
+        `fits` is the mask of _compatible(): it says which contact may take over which.
+        """
         index, pairs = len(contacts), self.system.pairs
         if index == self.count:
             yield np.array(contacts, dtype=np.int64), np.array(signs)
@@ -212,7 +233,11 @@ class _Search:
                     yield from self._extend(candidate, all_signs.tolist(), fits)
 
     def _symmetry(self, contacts: Integers, signs: Array, shift: float) -> Symmetry | None:
-        """Return the symmetry that moves the contacts so, or None for the identity or where there is none."""
+        """Return the symmetry that permutes contacts with signs and shifts time, or None for the identity
+        or where there is none.
+
+        Its matrix solves vectors @ matrix = images by least squares, and must be orthogonal.
+        """
         if shift == 0.0 and (contacts == np.arange(self.count)).all() and (signs > 0.0).all():
             return None
         vectors, mapped = self._known_images(contacts, signs, shift)
@@ -235,7 +260,8 @@ class _Search:
         )
 
     def _known_images(self, contacts: Integers, signs: Array, shift: float) -> tuple[Array, Array]:
-        """Return rows (rows, n) whose images under a permutation of contacts are known, and these images.
+        """Return rows (k, n) whose images under a signed permutation of contacts and a shift are known,
+        and these images (k, n).
 
         The rows are those of the Jacobian, friction and load, their products with the couplings, and the
         directions that bearings with clearance feel beside them.
@@ -255,7 +281,7 @@ class _Search:
         return vectors, mapped
 
     def _by_group(self, rows: Sequence[Array]) -> Array:
-        """Return rows (k, n), each cut to the coordinates of one group, group by group.
+        """Return rows (k, n), each cut to the coordinates of one group, group by group: (groups * k, n).
 
         The image of a row holds for its part in each group, since a symmetry does not mix groups.
         """
@@ -263,8 +289,8 @@ class _Search:
         return np.concatenate([whole * np.isin(np.arange(size), group) for group in self.groups])
 
     def _friction(self, shift: float) -> Array:
-        """Return the vector (contacts, phases, n) that friction adds to the load for a unit force of each
-        contact.
+        """Return the generalised force (contacts, phases, n) of friction for a unit force of each
+        contact, a shift later.
         """
         rubbing = self.system.rubbing
         vectors = np.zeros((self.count, PHASES, self.system.size))
@@ -275,12 +301,16 @@ class _Search:
         return vectors
 
     def _load(self, shift: float) -> Array:
-        """Load (1, phases, n)."""
+        """Return the generalised load (1, phases, n) at PHASES phases of a mesh period, a shift (mesh
+        periods) later.
+        """
         return stacked_values(self.system.load, self.cycles + shift)[None]
 
     @property
     def _couplings(self) -> list[Array]:
-        """Coupling matrices (n, n) beside the diagonal ones, each of size one."""
+        """Matrices (n, n) of the dampers, gyroscopic, circulatory and centrifugal coupling, each divided
+        by its largest entry.
+        """
         coupling = self.system.coupling
         if coupling is None:
             return []
@@ -289,13 +319,18 @@ class _Search:
 
     @property
     def _rings(self) -> Array:
-        """Rows (rings, 2, n) of the bearings with clearance."""
+        """Jacobian rows (rings, 2, n) of the bearings with clearance: their displacements along x and y
+        by the coordinates.
+        """
         rows = self.system.mesh_jacobian[self.count :].reshape(-1, 3, self.system.size)
         return np.asarray(rows[:, :2])
 
     def _ring_images(self, contacts: Integers, signs: Array) -> list[tuple[Array, Array]]:
-        """Rows (2, n) of each bearing with clearance that contacts feel, and of the bearing that it
-        becomes.
+        """Return, for each bearing with clearance, its rows (2, n) and those of the bearing that it
+        becomes in the image.
+
+        They are found by the products of the contacts' rows with them; a bearing without an equal is left
+        out.
         """
         image_jacobian = signs[:, None] * self.jacobian[contacts]
         size = np.abs(self.jacobian).max() ** 2
@@ -312,9 +347,10 @@ class _Search:
     def _with_rings(
         self, vectors: Array, mapped: Array, images: Sequence[tuple[Array, Array]]
     ) -> tuple[Array, Array]:
-        """Rows (rows, n) and their images, extended by those of bearings with clearance.
+        """Return rows (rows, n) and their images, extended by those of bearings with clearance.
 
-        These are the part of each row that a bearing feels, and the direction that only this bearing feels.
+        Added are the part of each row that a bearing feels, and the direction that only this bearing
+        feels. `images` come from _ring_images().
         """
         for ring, image_ring in images:
             vectors = np.concatenate([vectors, vectors @ ring.T @ ring])
@@ -331,8 +367,8 @@ class _Search:
         return np.concatenate([vectors, beside[:, 0]]), np.concatenate([mapped, beside[:, 1]])
 
     def _keeps_the_rest(self, matrix: Array) -> bool:
-        """Whether a map (n, n) leaves bearings, with clearance or without, dampers and couplings
-        unchanged.
+        """Whether an orthogonal map (n, n) leaves bearing frequencies, damping, couplings and bearings
+        with clearance unchanged.
         """
         system = self.system
         diagonal = [np.diag(values) for values in (system.omega_squared, system.damping)]
@@ -351,7 +387,9 @@ class _Search:
 
 
 def _groups(keys: Array) -> list[Integers]:
-    """Group coordinates: return the numbers of the coordinates with equal keys (n, 2), group by group."""
+    """Return the indices of the coordinates with equal keys (n, 2), group by group; SYMMETRIC says what
+    is equal.
+    """
     scale = np.maximum(np.abs(keys).max(axis=0), 1e-300)
     groups: list[list[int]] = []
     for number, key in enumerate(keys):
@@ -365,32 +403,42 @@ def _groups(keys: Array) -> list[Integers]:
 
 
 def _near(first: Array, second: Array, scale: float = 0.0) -> AnyArray:
-    """Whether numbers are equal, relative to themselves or to a scale; infinite ones equal themselves."""
+    """Return where two arrays are equal to within SYMMETRIC of the larger of them and of `scale`;
+    infinities equal themselves.
+    """
     size = np.maximum(np.maximum(np.abs(first), np.abs(second)), scale)
     with np.errstate(invalid="ignore"):
         return np.asarray((first == second) | (np.abs(first - second) <= SYMMETRIC * size))
 
 
 def _curves_agree(curves: Array, other_curves: Array, scale: float = 0.0) -> AnyArray:
-    """Return which curves (..., contacts) agree with which other curves, as a mask (contacts, contacts)."""
+    """Return which curves (..., contacts) agree with which other curves, as a mask (contacts, contacts).
+
+    Row i, column j compares contact i of `curves` with contact j of `other_curves`, to within SYMMETRIC
+    of the largest value of `curves` or of `scale`.
+    """
     first, second = (values.reshape(-1, values.shape[-1]) for values in (curves, other_curves))
     size = max(np.abs(first).max(initial=0.0), scale, 1e-300)
     return np.asarray(np.abs(first[:, :, None] - second[:, None]).max(axis=0) <= SYMMETRIC * size)
 
 
 def _only_direction(rows: Array) -> Array:
-    """Return the longest direction (n,) in the span of two rows (2, n)."""
+    """Return the dominant right singular vector (n,) of two rows (2, n), times its singular value."""
     _, sizes, axes = np.linalg.svd(rows)
     return np.asarray(sizes[0] * axes[0])
 
 
 def _rank(rows: Array) -> int:
-    """Return the numerical rank of rows."""
+    """Return the numerical rank of rows (k, n), to SYMMETRIC of their largest singular value."""
     return int(np.linalg.matrix_rank(rows, tol=SYMMETRIC * np.linalg.norm(rows, 2)))
 
 
 def _scale_rows(rows: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return rows and their images as matrices (rows, n), both divided by the size of the rows."""
+    """Return rows (..., n) and their images as matrices (k, n), both divided by the largest entry of the
+    rows.
+
+    Rows of zeros are left out.
+    """
     first, second = (values.reshape(-1, values.shape[-1]) for values in rows)
     size = max(np.abs(first).max(initial=0.0), 1e-300)
     is_nonzero = np.abs(first).max(axis=1, initial=0.0) > 0.0

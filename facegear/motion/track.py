@@ -72,7 +72,7 @@ def split_loads(forces: Array, rounding: float, loads: Array) -> None:
     Parameters
     ----------
     forces : (M, K)
-        Force that each mesh transmits, N.
+        Force that each mesh transmits, N; positive on the drive flank, negative on the back flank.
     rounding
         Part of the largest force up to which a force counts as none, dimensionless.
     loads : (2 M, K)
@@ -82,7 +82,9 @@ def split_loads(forces: Array, rounding: float, loads: Array) -> None:
 
 
 class Track(Protocol):
-    """A motion of n coordinates at K evenly spaced instants."""
+    """A motion of n coordinates y at K evenly spaced instants, from which linear functions of y and dy/dt
+    are taken.
+    """
 
     @property
     def count(self) -> int:
@@ -113,7 +115,7 @@ class PeriodicTrack:
     Attributes
     ----------
     waves : (n, W) array
-        Complex amplitudes of the coordinates times K.
+        Discrete Fourier transform (np.fft.rfft) of the coordinates at the K instants.
     count : int
         Number K of instants.
     step : float
@@ -162,7 +164,7 @@ class SampledTrack:
 
     @cached_property
     def rates(self) -> Array:
-        """Velocities (K, n)."""
+        """Velocities (K, n), in the coordinates' unit per second."""
         time = np.arange(self.count) * self.step
         return np.asarray(scipy.interpolate.CubicSpline(time, self.samples)(time, 1))
 
@@ -187,7 +189,7 @@ class SampledTrack:
 
 
 def track(response: SteadyState, factor: int = 1) -> Track:
-    """Make the track of a response.
+    """Make the track of a response: through its samples, by Fourier series if it is periodic.
 
     Parameters
     ----------
@@ -233,7 +235,9 @@ def periodic_track(samples: Array, step: float, factor: int = 1) -> PeriodicTrac
 
 @dataclass(frozen=True, eq=False)
 class DenseMotion:
-    """A response at K evenly spaced instants, `per_period` of them in each mesh period."""
+    """A response at K evenly spaced instants, `per_period` of them in each mesh period; quantities are
+    computed on demand.
+    """
 
     response: SteadyState
     per_period: int
@@ -241,7 +245,9 @@ class DenseMotion:
 
     @cached_property
     def beyond(self) -> Array:
-        """Compression of each mesh or flank (contacts, periods, per_period), m."""
+        """Compression of each mesh or flank (contacts, periods, per_period), m, negative on the lower
+        side of a mesh, 0 when open.
+        """
         system = self.response.system
         jacobian = system.mesh_jacobian[: system.contacts].T
         deflections = self.track.along(jacobian, np.zeros_like(jacobian))
@@ -252,12 +258,14 @@ class DenseMotion:
 
     @cached_property
     def deepest(self) -> Array:
-        """Largest compression of each mesh or flank (contacts,), m."""
+        """Largest magnitude of the compression of each mesh or flank over all instants (contacts,), m."""
         return np.maximum(self.beyond.max(axis=(1, 2)), -self.beyond.min(axis=(1, 2)))
 
     @cached_property
     def forces(self) -> Array:
-        """Elastic mesh forces (meshes, K), N; with two flanks the difference of both."""
+        """Elastic mesh forces (meshes, K), N, positive on the drive flank; with two flanks drive less
+        back flank.
+        """
         system, cycles = self.response.system, np.arange(self.per_period) / self.per_period
         contact_forces = system.law.force(cycles, np.moveaxis(self.beyond, 0, -1))
         forces = np.moveaxis(contact_forces, -1, 0).reshape(system.contacts, -1)
@@ -268,12 +276,16 @@ class DenseMotion:
 
     @cached_property
     def loads(self) -> Array:
-        """Elastic mesh forces (meshes, K), N, without those that are rounding beside the largest."""
+        """Elastic mesh forces (meshes, K), N, as `forces`, but 0 where they are rounding beside the
+        largest.
+        """
         return significant_forces(self.forces)
 
     @property
     def flank_loads(self) -> Array:
-        """Elastic forces (2 meshes, K), N, of the drive flanks, then of the back flanks, none negative."""
+        """Magnitudes (2 meshes, K), N, of the elastic forces of the drive flanks, then of the back
+        flanks; rounding is left out.
+        """
         loads = np.empty((2 * len(self.forces), self.track.count))
         split_loads(self.forces, NO_LOAD, loads)
         return loads
@@ -281,7 +293,7 @@ class DenseMotion:
     @property
     def past_law(self) -> Array:
         """Fraction of the instants (contacts,) at which a contact is compressed beyond the last level of
-        its law.
+        its law's table.
         """
         law = self.response.system.law
         if law.straight:

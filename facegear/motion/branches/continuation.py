@@ -58,7 +58,7 @@ class ContinuationSettings:
     Attributes
     ----------
     p_min, p_max : float
-        Range of the parameter.
+        Range of the parameter, in its unit.
     first, ds_min, ds_max : float
         First, smallest and largest step length.
     max_points : int
@@ -110,13 +110,15 @@ class Branch:
 
     @property
     def arc(self) -> Array:
-        """Arc length of the points, from the first, shape (points,)."""
+        """Arc length of the points from the first, shape (points,): sums of chord lengths in x, see
+        BranchPoint, dimensionless.
+        """
         steps = [np.linalg.norm(b.x - a.x) for a, b in zip(self.points, self.points[1:], strict=False)]
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def values(self) -> Array:
-        """Parameter of the points, shape (points,)."""
+        """Parameter of the points in its own unit, not its logarithm, shape (points,)."""
         return np.array([point.value for point in self.points])
 
     def of(self, *kinds: str) -> list[Special]:
@@ -137,6 +139,12 @@ class Branch:
 
 @dataclass(eq=False)
 class _Track:
+    """One side of a branch while it is followed from its start: points, special points, reason of its
+    end.
+
+    `specials` have their `after` counted from the start; `failed_attempts` is as in Branch.
+    """
+
     points: list[BranchPoint]
     specials: list[Special] = field(default_factory=list)
     end: BranchEnd = BranchEnd.POINTS
@@ -150,7 +158,7 @@ def follow(
     both_ways: bool = True,
     progress: Callable[[BranchPoint], None] = lambda point: None,
 ) -> Branch:
-    """Follow the branch through a point.
+    """Follow the branch through a point by pseudo-arclength continuation, and locate its special points.
 
     Parameters
     ----------
@@ -205,7 +213,10 @@ def _track(
     run: ContinuationSettings,
     progress: Callable[[BranchPoint], None],
 ) -> _Track:
-    """Continue a branch in one direction until it closes, ends or reaches a limit."""
+    """Continue a branch from a start along its tangent until it closes, ends or reaches a limit.
+
+    Steps that are refused are shortened by SHORTENING_FACTOR. `progress` is called with each new point.
+    """
     track, step, before = _Track([start]), run.first, None
     if any(abs(start.u - np.log(limit)) < JUNCTION for limit in (run.p_min, run.p_max)) and _outward(
         start, run
@@ -246,7 +257,7 @@ def _track(
 
 
 def _outward(start: BranchPoint, run: ContinuationSettings) -> bool:
-    """Whether a point at a limit of the parameter has a tangent that leads beyond it."""
+    """Whether the tangent at a point that lies at a limit of the parameter leads beyond this limit."""
     upper = abs(start.u - np.log(run.p_max)) < abs(start.u - np.log(run.p_min))
     return bool(start.tangent[-1] > 0.0) == upper
 
@@ -259,8 +270,11 @@ def _next(
     run: ContinuationSettings,
     images: list[Array],
 ) -> tuple[BranchPoint, BranchEnd | None]:
-    """Compute the next point, and why the branch ends there if it does. Raises NotConverged if a step is
-    refused.
+    """Return the next point, one step along the tangent, and why the branch ends there, or None if it
+    goes on.
+
+    `before` is the point before the current one, `images` the start's images, to see whether the branch
+    closes. Raises NotConverged if the step is refused.
     """
     next_point = step_along(period_map, current_point, before, step)
     limits = np.log([run.p_min, run.p_max])
@@ -281,7 +295,9 @@ def _next(
 def _onto_limit(
     period_map: PeriodMap, current_point: BranchPoint, next_point: BranchPoint, limit: float
 ) -> BranchPoint:
-    """Return the point at a limit of the parameter between two points."""
+    """Return the orbit at which a branch passes a limit of the parameter (its logarithm) between two
+    points.
+    """
     fraction = (limit - current_point.u) / (next_point.u - current_point.u)
     guess = current_point.x + fraction * (next_point.x - current_point.x)
     guess[-1] = limit
@@ -291,15 +307,19 @@ def _onto_limit(
 
 
 def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
-    """Return the point's images under the period map, with the parameter appended."""
+    """Return the start's weighted states at each of its mesh periods, with the parameter's logarithm
+    appended, (2 n + 1,).
+    """
     return [np.append(z, start.u) for z in period_map.images(start.z, start.u)]
 
 
 def _closing_point(
     period_map: PeriodMap, images: list[Array], current_point: BranchPoint, next_point: BranchPoint
 ) -> BranchPoint | None:
-    """Return the point at which the branch comes back to its start, at any of the start's mesh periods,
-    or None.
+    """Return the start as a point of the branch if the branch comes back to it in this step, else None.
+
+    `images` are the start's states at each of its mesh periods, see _images(): a branch may return to any
+    of them.
     """
     chord = next_point.x - current_point.x
     length = np.linalg.norm(chord)
@@ -330,9 +350,11 @@ def _closing_point(
 def _between_points(
     period_map: PeriodMap, current_point: BranchPoint, next_point: BranchPoint
 ) -> tuple[DividedStep, list[BranchPoint], BranchEnd | None]:
-    """Find the special points between two points, and the points that follow the current one.
+    """Return the special points of a step, the points that follow the current one, and why the branch
+    ends, or None.
 
-    Where the branch runs into its own image, the points are its last ones and the third value is that end.
+    Where the branch runs into its own image, shifted by half its period, the points lead up to that
+    place. The end is then DOUBLING.
     """
     meeting = reversal(period_map, current_point, next_point)
     if meeting is None:
@@ -348,9 +370,9 @@ def _between_points(
 def _cut_at_junction(track: _Track, begin: int) -> bool:
     """Cut the track at a branch point at which it turns round, and return whether there was one.
 
-    The branch ends where the other branch goes through; what follows is its own mirror image. `begin` is the
-    number of the point from which the last step went. Points that were put inside that step do not count as
-    steps.
+    Branch point and fold lie together where the branch meets the branch it left from; what follows is its
+    own mirror image. `begin` is the index of the point from which the last step went. Points that were
+    put inside that step do not count as steps.
     """
     late = [special for special in track.specials if special.after > begin + 1 - NEAR_JUNCTION]
     for special in late:
@@ -363,5 +385,9 @@ def _cut_at_junction(track: _Track, begin: int) -> bool:
 
 
 def _at(special: Special, point: BranchPoint) -> bool:
-    """Whether a fold or branch point is only how a branch that ends at `point` looks there."""
+    """Whether a special point is a fold or branch point at the same parameter as the `point` at which a
+    branch ends.
+
+    It is then only how the end of the branch looks and no special point of its own.
+    """
     return special.kind in (Kind.FOLD, Kind.BRANCH) and abs(special.point.u - point.u) < JUNCTION

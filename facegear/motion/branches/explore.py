@@ -42,7 +42,7 @@ class SettledMotion:
     label, period : str, int
         Class of motion, and its mesh periods.
     z : (2 n,) array
-        A weighted state on it.
+        A weighted state on it, see PeriodMap.
     point : BranchPoint or None
         The orbit if it is periodic.
     count, fraction : int, float
@@ -130,11 +130,15 @@ class _Runs:
 
     @property
     def patience(self) -> int:
-        """Number of blocks in which a run may come to a known orbit."""
+        """Number of blocks of periods that a run is given to come to a known orbit; 1 while none is
+        known.
+        """
         return PATIENCE if self.images else 1
 
     def go_on(self, paths: list[list[Array]]) -> None:
-        """Run all paths, side by side, some blocks further, but no longer than patience allows."""
+        """Run all paths some blocks further, side by side, and append their states; no path gets longer
+        than patience allows.
+        """
         blocks = min(ROUND, self.patience + 1 - min(len(path) for path in paths))
         running = [path for path in paths if len(path) + blocks <= self.patience + 1]
         if blocks < 1 or not running:
@@ -144,8 +148,8 @@ class _Runs:
             path.extend(ends[BLOCK - 1 :: BLOCK])
 
     def nearby_motion(self, path: list[Array]) -> int | None:
-        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there is
-        none.
+        """Return the index of the motion whose orbit a path has come within NEAR of, and closer than a
+        block before, or None.
         """
         if not self.images:
             return None
@@ -155,7 +159,9 @@ class _Runs:
         return self.images[close[0, 1]][0] if len(close) else None
 
     def settle(self, z: Array) -> int:
-        """Run a state until it settles by itself, and return the number of its motion."""
+        """Run a weighted state (2 n,) until it settles by itself; return the index of its motion, which
+        is added if it is new.
+        """
         motion = _run_until_settled(self.period_map, self.u, z, self.settings)
         for number, earlier_motion in enumerate(self.motions):
             if _is_same_motion(self.period_map, self.u, motion, earlier_motion):
@@ -168,12 +174,16 @@ class _Runs:
         return number
 
     def add(self, number: int) -> None:
-        """Count one more start that ends on a motion."""
+        """Count one more start that ends on the motion with this number."""
         self.motions[number] = replace(self.motions[number], count=self.motions[number].count + 1)
 
 
 def _run_until_settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:
-    """Run from a state until it settles; locate the periodic orbit if there is one."""
+    """Run from a weighted state z (2 n,) until it settles; locate the orbit by Newton's method if it is
+    periodic.
+
+    The motion's count, fraction and error are 0 still.
+    """
     system, frequency = period_map.family.at(float(np.exp(u)))
     response = steady_state(system, frequency, settings, period_map.state(z, u))
     end_state = period_map.to_weighted(response.state, u)
@@ -190,7 +200,9 @@ def _run_until_settled(period_map: PeriodMap, u: float, z: Array, settings: Sett
 def _is_same_motion(
     period_map: PeriodMap, u: float, motion: SettledMotion, other_motion: SettledMotion
 ) -> bool:
-    """Whether two motions have the same class and, where periodic, the same orbit."""
+    """Whether two motions have the same label and, if both have an orbit, orbits that differ by less than
+    SAME_ORBIT.
+    """
     if motion.label != other_motion.label:
         return False
     if motion.point is None or other_motion.point is None:
@@ -202,10 +214,11 @@ def _is_same_motion(
 
 
 def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
-    """Return the largest difference of a state from the nearest image of another state.
+    """Return the largest component of the difference of a weighted state (2 n,) from the nearest of
+    several images.
 
-    Shifts along neutral directions do not count; the neutral directions are those of the orbit that has more
-    of them.
+    Shifts along neutral directions (2 n, k) do not count; `loose` has those of both orbits, of which the
+    more are taken.
     """
     neutral = max(loose, key=lambda shifts: shifts.shape[1])
     apart = np.array(images) - z
@@ -297,10 +310,10 @@ def distance(branch: Branch, orbit: BranchPoint, period: int) -> float:
 
 
 def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float, Array]]:
-    """Yield the states at which a branch passes a parameter's logarithm, with chord lengths and neutral
-    directions.
+    """Yield a guess for each orbit at which a branch passes a parameter's logarithm `u`.
 
-    The states lie on the cubics between the branch's points.
+    Each is a weighted state (2 n,) on the cubic between two points of the branch, the length of the chord
+    between them, and the neutral directions (2 n, k) of the first.
     """
     for start_point, end_point in pairwise(branch.points):
         turns = start_point.tangent[-1] * end_point.tangent[-1] < 0.0

@@ -21,7 +21,7 @@ MACHINE_PARAMETERS = ("torque", "backlash", "mesh_damping", "bearing_stiffness")
 class Family:
     """Systems that depend on one positive parameter.
 
-    Branches are followed in its logarithm. Every system has the same length scale.
+    Branches are followed in its natural logarithm. Every system has the same length scale.
 
     Attributes
     ----------
@@ -99,7 +99,8 @@ def speed_family(model: Model) -> Family:
 
 
 def machine_plane(model: Model, second: str) -> Plane:
-    """Return the systems of a machine over its pinion speed and a factor on another parameter.
+    """Return the systems of a machine over its pinion speed and a factor on another parameter, see
+    scale_parameter().
 
     Parameters
     ----------
@@ -122,7 +123,10 @@ def machine_plane(model: Model, second: str) -> Plane:
 
 
 def scale_parameter(model: Model, parameter: str, factor: float) -> System:
-    """Return the system of a machine with one parameter multiplied, in the same coordinates.
+    """Return the system of a machine with one parameter multiplied, in the same reduced coordinates.
+
+    "torque" scales the mean torques and not other forces. "bearing_stiffness" scales the damping that is
+    proportional to it, too. The length scale stays.
 
     Parameters
     ----------
@@ -169,7 +173,7 @@ MAX_EXTREMA = 64
 
 
 def extrema(integrator: Integrator, state: Array, periods: int) -> Array:
-    """Maxima and minima of each mesh deflection over a run.
+    """Return the maxima and minima of each row's deflection over a run, sorted and filled up.
 
     Parameters
     ----------

@@ -31,7 +31,8 @@ class Graze:
     Attributes
     ----------
     test : callable
-        Height of the extremum above the edge, from PeriodMap.extrema().
+        Function of an array of PeriodMap.extrema() that returns the height of the extremum above the
+        edge, in length scales; its zero is the graze.
     meshes : tuple of int
         Meshes that symmetry moves in the same way.
     edge : int
@@ -91,19 +92,28 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:
-    """Return the edges (2, m) of all meshes over the length scale; nan where a mesh never opens."""
+    """Return the lower and upper edges (2, m) of all meshes, in length scales; NaN where a mesh never
+    opens.
+    """
     levels = np.array(period_map.edges(u))
     return np.where(np.isfinite(levels), levels, np.nan)
 
 
 def _above(extrema: Array, levels: Array) -> Integers:
-    """Return the number of maxima and minima above each edge, (2, m, 2)."""
+    """Count the extrema (m, 2, most) that lie above each level (2, m): numbers (2, m, 2) of maxima and of
+    minima.
+
+    The axes are edges (lower, upper), meshes, and kinds of extrema.
+    """
     return (extrema > levels[:, :, None, None]).sum(axis=-1)
 
 
 def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array], float]:
-    """Return the test function of a graze: height of the extremum of a rank, counted from the largest, above
-    an edge.
+    """Return the test function of a graze, for Graze.test: height of an extremum above an edge, in length
+    scales.
+
+    It takes an array of PeriodMap.extrema(). `kind` is 0 for maxima, 1 for minima; `rank` counts from the
+    largest. Where the extremum does not exist the function returns -1.
     """
 
     def test(extrema: Array) -> float:
@@ -129,7 +139,7 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     Returns
     -------
     float or None
-        Position as a fraction of the chord, or None.
+        Position as a fraction of the chord at which to divide the stretch, or None.
     """
     # An extremum may come over an edge and go back within one step, or two of them may be born beyond it:
     # both ends then have the same contacts, and only the extrema between them tell.
@@ -159,12 +169,18 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _passages(extrema: Array, levels: Array) -> Integers:
-    """Return the number of pairs of passages of each finite edge, (2, m)."""
+    """Return minima less maxima above each edge, (2, m): minus the number of times the deflection rises
+    above it.
+
+    The number counts for one period and is 0 for edges that are not finite.
+    """
     return np.where(np.isfinite(levels), np.diff(_above(extrema, levels))[..., 0], 0)
 
 
 def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
-    """Return which extrema are within `reach` of an edge at one end of a stretch."""
+    """Return which extrema (m, 2, most) lie within `reach` of an edge, at `level` (m,), at either end of
+    a stretch.
+    """
     first_gap, second_gap = first - level[:, None, None], second - level[:, None, None]
     finite = np.isfinite(first_gap) & np.isfinite(second_gap)
     return finite & (np.minimum(abs(first_gap), abs(second_gap)) < reach)
@@ -173,9 +189,12 @@ def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
 def _dips(
     extrema: list[Array], slopes: list[Array], levels: Array, near: list[Mask]
 ) -> Iterator[tuple[float, ...]]:
-    """Yield where cubics through the extrema come closest to an edge that both ends lie on one side of.
+    """Yield fractions of a stretch at which extrema may pass an edge and come back, by cubics through
+    them.
 
-    Where the ends lie on both sides, yield the fractions before and after the cubic comes back over the edge.
+    Where both ends of a cubic lie on one side of the edge, it is where the cubic comes closest. Where
+    they lie on both sides, it is a pair before and after it comes back. `extrema` and `slopes` (m, 2,
+    most) are those at both ends, `levels` (2, m) the edges, `near` the extrema to examine at each edge.
     """
     t = LOOKED_AT
     for level, few in zip(levels, near, strict=True):
@@ -206,10 +225,12 @@ def _dips(
 def _ripples(
     extrema: list[Array], slopes: list[Array], levels: Array, counts: list[Integers], born: Integers
 ) -> Iterator[tuple[float]]:
-    """Yield where one of a maximum and a minimum that are born in a stretch may lie above an edge alone.
+    """Yield fractions of a stretch at which only one of a maximum and a minimum that are born in it may
+    be above an edge.
 
-    At one end both are above the edge. The place is the middle of the points at which straight lines through
-    them meet the edge.
+    `born` lists edge and mesh where both counts of _above() differ between the ends. The fraction is the
+    mean of the zeros of straight lines through the heights of both extrema at the end at which they
+    exist.
     """
     for side, mesh in born:
         ranks = np.minimum(counts[0][side, mesh], counts[1][side, mesh])

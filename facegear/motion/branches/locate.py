@@ -49,7 +49,11 @@ STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 
 @dataclass(frozen=True, eq=False)
 class _Event:
-    """Change between two points. `test` is a function of a BranchPoint, at a graze of its extrema."""
+    """Kind of change between two points, and the function whose zero locates it.
+
+    `test` takes a BranchPoint, for a graze the array of its extrema instead. `meshes` and `edge` are
+    those of a graze, see Special.
+    """
 
     kind: Kind
     test: Callable[..., float]
@@ -76,7 +80,7 @@ class DividedStep:
 
 
 def locate(period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint) -> DividedStep:
-    """Find all special points between two neighbours, and points of the branch that separate them.
+    """Find all special points of a step of the continuation, and points of the branch that separate them.
 
     Parameters
     ----------
@@ -128,7 +132,9 @@ def locate_grazes(
 
 
 def _cut(segment: Segment, low: float, high: float) -> float:
-    """Fraction of a point between two special points; a known point if there is one."""
+    """Return the fraction at which a step is divided between two special points: that of a solved point,
+    else the middle.
+    """
     middle = 0.5 * (low + high)
     inside = [fraction for fraction in segment.points_by_fraction if low < fraction < high]
     margin = 0.1 * (high - low)
@@ -137,7 +143,12 @@ def _cut(segment: Segment, low: float, high: float) -> float:
 
 
 def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
-    """Find special points between two fractions of a segment; halve it while events are ambiguous."""
+    """Return the special points between two fractions of a segment, `after` being the fraction of the
+    segment.
+
+    The stretch is halved while several events in it cannot be told apart or some may be hidden; `depth`
+    counts the halvings.
+    """
     first, second = segment.at(low), segment.at(high)
     if first.linear.neutral.shape != second.linear.neutral.shape:
         return _loosening(segment, low, high, depth)
@@ -161,10 +172,9 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
 
 
 def _join(first: list[Special], second: list[Special]) -> list[Special]:
-    """Return the special points of two halves of a stretch, grazes at their border as one.
+    """Return the special points of both halves of a stretch, with a graze that both contain as one.
 
-    Where a stretch is divided at a graze, rounding decides in which half each of the meshes that graze there
-    does.
+    Where a stretch is divided at a graze, rounding decides in which half each of its meshes is found.
     """
     specials = [*first]
     for special in second:
@@ -178,14 +188,15 @@ def _join(first: list[Special], second: list[Special]) -> list[Special]:
 
 
 def _same_graze(first: Special, second: Special) -> bool:
-    """Whether two points are one graze of the same contact edge."""
+    """Whether two special points are one graze: both are grazes of the same edge at the same place."""
     kinds = {first.kind, second.kind}
     return kinds == {Kind.GRAZE} and first.edge == second.edge and abs(first.after - second.after) < SHORTEST
 
 
 def _kink(specials: list[Special], low: float, high: float) -> float | None:
-    """Return the fraction of a graze inside a stretch: multipliers bend sharply there, so each side is
-    searched alone.
+    """Return the fraction of a graze strictly inside a stretch, or None.
+
+    Multipliers bend sharply there, so each side is searched alone.
     """
     margin = ASIDE * (high - low)
     inside = (special.after for special in specials if special.kind is Kind.GRAZE)
@@ -193,8 +204,10 @@ def _kink(specials: list[Special], low: float, high: float) -> float | None:
 
 
 def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: float) -> float | None:
-    """Fraction of a graze at which no extreme lies at the edge: one of the extremes that are counted there is
-    born or vanishes, and the graze itself lies elsewhere.
+    """Return the fraction at which to divide a stretch with a graze that has no extremum at the edge, or
+    None.
+
+    There one of the extrema that are counted is born or vanishes, and the graze itself lies elsewhere.
     """
     for special in specials:
         if special.kind is not Kind.GRAZE or high - low <= SHORTEST:
@@ -209,7 +222,9 @@ def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: floa
 
 
 def _hidden(segment: Segment, low: float, high: float) -> float | None:
-    """Fraction at which a stretch has to be divided to see events that cancel out between its ends."""
+    """Return the fraction at which a stretch must be divided to see events that cancel out between its
+    ends, or None.
+    """
     look = hidden_change(segment, low, high)
     if look is None:
         look = hidden_graze(segment, low, high)
@@ -217,7 +232,7 @@ def _hidden(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
-    """Find grazes between two fractions of a segment, hidden pairs included."""
+    """Return the grazes between two fractions of a segment; `depth` counts halvings, as in _between()."""
     events, is_ambiguous = _grazing(segment.period_map, segment.at(low), segment.at(high))
     between = None
     if is_ambiguous and high - low > SHORTEST:
@@ -235,13 +250,20 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
 
 
 def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Return the grazes between two points as events, and whether they are ambiguous."""
+    """Return the grazes between two points as events, and whether some cannot be told apart, see
+    grazes().
+    """
     graze_list, is_ambiguous = grazes(period_map, first, second)
     return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in graze_list], is_ambiguous
 
 
 def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Return the events between two points, and whether more than one of a kind is among them."""
+    """Return the events between two points, and whether they are ambiguous, so that the stretch must be
+    halved.
+
+    A fold is a change of sign of the tangent's parameter component. Doublings, tori and branch points are
+    changes in the counts of multipliers outside the unit circle or of the parity.
+    """
     events, is_ambiguous = _grazing(period_map, first, second)
     plus_ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
@@ -272,18 +294,24 @@ def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> t
 
 
 def _value_at_rank(values: Array, rank: int, default: float = 0.0) -> float:
-    """Return the value at a rank, or a default beyond the last."""
+    """Return the value at an index of values (m,), or a default where there are fewer."""
     return float(values[rank]) if rank < values.size else default
 
 
 def _turns(first: BranchPoint, second: BranchPoint) -> bool:
-    """Whether the branch turns back in its parameter between two points."""
+    """Whether the tangent's parameter component changes its sign between two points: the branch has a
+    fold there.
+    """
     a, b = first.tangent[-1], second.tangent[-1]
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 
 
 def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Special]:
-    """Locate where a body comes loose or is caught, by halving, and the events before and after it."""
+    """Return where a body comes loose or is caught between two fractions, by halving, and the events on
+    both sides.
+
+    There the number of neutral directions changes.
+    """
     start, end = low, high
     while high - low > LOOSE_BRACKET:
         middle = 0.5 * (low + high)
@@ -300,7 +328,9 @@ def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Sp
 
 
 def _refine(segment: Segment, low: float, high: float, event: _Event) -> Special:
-    """Locate a special point by bracketed root finding of its test function."""
+    """Locate an event between two fractions of a segment by Brent's method, and return it as a special
+    point.
+    """
 
     def test(fraction: float) -> float:
         if event.kind is Kind.GRAZE:

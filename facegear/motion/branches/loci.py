@@ -26,7 +26,9 @@ STRAIGHT = 0.9
 
 
 class Corner(StrEnum):
-    """Special points of a locus."""
+    """Special points of a locus: a cusp, where two folds meet, or an extremum of the second parameter
+    along it.
+    """
 
     CUSP = "cusp"
     TURN = "turn in the second parameter"
@@ -67,7 +69,7 @@ class Locus:
     points : list of LocusPoint
         Points along the locus.
     corners : list of tuple
-        Cusps and extrema, each with its point.
+        Cusps and turns (extrema of the second parameter along the locus), each with its point.
     ends : tuple of BranchEnd
         Why the locus ends on both sides.
     """
@@ -132,7 +134,10 @@ def follow_locus(
 def _track(
     problem: LocusProblem, start: LocusPoint, run: LocusRun, progress: Callable[[LocusPoint], None]
 ) -> tuple[list[LocusPoint], list[tuple[Corner, LocusPoint]], BranchEnd]:
-    """Continue a locus in one direction until it closes, ends or reaches a limit."""
+    """Continue a locus from a start along its tangent; return its points, its corners, and why it ends.
+
+    It ends at a limit of a parameter, after max_points points, or where steps become too short.
+    """
     points, step = [start], run.first
     corners: list[tuple[Corner, LocusPoint]] = []
     limits = np.log([run.p_min, run.p_max])
@@ -161,7 +166,9 @@ def _track(
 
 
 def _step(problem: LocusProblem, current_point: LocusPoint, step: float) -> LocusPoint:
-    """Return the next point of a locus, one step along its tangent."""
+    """Return the next point of a locus, one step along its tangent. Raises NotConverged if it turns too
+    sharply.
+    """
     guess = current_point.x + step * current_point.tangent
     next_point = solve_on_locus(
         problem,
@@ -180,7 +187,9 @@ def _step(problem: LocusProblem, current_point: LocusPoint, step: float) -> Locu
 def _onto_limit(
     problem: LocusProblem, current_point: LocusPoint, next_point: LocusPoint, axis: int, limit: float
 ) -> LocusPoint:
-    """Return the point at which a locus crosses the limit of a parameter."""
+    """Return the point at which a locus crosses a limit (a logarithm) of the parameter `axis`: 0 the
+    first, 1 the second.
+    """
     row = np.zeros(current_point.x.size)
     row[-2 + axis] = 1.0
     fraction = (limit - current_point.x[-2 + axis]) / (next_point.x[-2 + axis] - current_point.x[-2 + axis])
@@ -193,7 +202,9 @@ def _onto_limit(
 def _corners(
     problem: LocusProblem, start_point: LocusPoint, end_point: LocusPoint
 ) -> list[tuple[Corner, LocusPoint]]:
-    """Find the cusps and the extrema in the second parameter between two points."""
+    """Return the cusps (zeros of `bend`) and turns in the second parameter between two points, with their
+    kinds.
+    """
     tests = {Corner.CUSP: lambda point: point.bend, Corner.TURN: lambda point: point.tangent[-1]}
     if problem.kind is Kind.DOUBLING or start_point.bend * end_point.bend > 0.0:
         del tests[Corner.CUSP]

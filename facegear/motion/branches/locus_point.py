@@ -33,7 +33,8 @@ class LocusProblem:
     plane : Plane
         Systems, by two parameters.
     period_map : PeriodMap
-        Map with the tolerance and the number of mesh periods.
+        Map with the tolerance and the number of mesh periods; its family is replaced by lines of the
+        plane.
     """
 
     kind: Kind
@@ -51,7 +52,7 @@ class LocusProblem:
         Returns
         -------
         PeriodMap
-            Map over the first parameter.
+            Map whose parameter u is the logarithm of the plane's first parameter.
         """
         return replace(self.period_map, family=self.plane.line(float(np.exp(v))))
 
@@ -82,7 +83,11 @@ class LocusProblem:
 
 @dataclass(frozen=True, eq=False)
 class Borders:
-    """Column `left` and row `right`, each (size,), that border a singular matrix."""
+    """Column `left` and row `right`, each (size,), that border a singular matrix so that it becomes
+    regular.
+
+    They are near the left and right singular vectors of its smallest singular value, see borders_of().
+    """
 
     left: Array
     right: Array
@@ -124,7 +129,7 @@ class LocusPoint:
     Attributes
     ----------
     x : (2 n + 2,) array
-        Weighted state, logarithms of both parameters.
+        Weighted state, see PeriodMap, then the natural logarithms of the first and second parameter.
     tangent : (2 n + 2,) array
         Unit tangent of the locus.
     bend : float
@@ -158,13 +163,14 @@ def reverse_tangent(point: LocusPoint) -> LocusPoint:
     Returns
     -------
     LocusPoint
-        Point whose tangent has the other sign.
+        Point whose tangent has the other sign, to follow the locus the other way.
     """
     return replace(point, tangent=-point.tangent)
 
 
 def borders_of(matrix: Array, before: Borders | None) -> Borders:
-    """Singular vectors of the smallest singular value, with the signs of the previous borders.
+    """Return the singular vectors of the smallest singular value as borders, with the signs of the
+    previous ones.
 
     Parameters
     ----------
@@ -195,7 +201,8 @@ def solve_on_locus(
     forward: Array,
     sharp: bool = False,
 ) -> LocusPoint:
-    """Find the point of the locus next to a guess with row . (x - guess) = 0.
+    """Find the point of the locus next to a guess with row . (x - guess) = 0, by Newton's method on
+    Borders.test().
 
     The change of the test function along the orbits comes from differences of the matrix. It is computed once
     for each point, and again where the test does not fall.
@@ -207,11 +214,12 @@ def solve_on_locus(
     guess : (2 n + 2,) array
         Weighted state and logarithms of both parameters, dimensionless.
     row : (2 n + 2,) array
-        Condition that selects the point, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the point is sought, dimensionless.
     borders : Borders
-        Borders of a point nearby.
+        Borders of a point nearby; they fix the test function.
     gradient : (2 n + 2,) array or None
-        Change of the test function at a point nearby, dimensionless.
+        LocusPoint.gradient of a point nearby, with which Newton's method begins; None: computed at the
+        guess.
     forward : (2 n + 2,) array
         Direction along which the tangent points, dimensionless.
     sharp : bool
@@ -250,7 +258,12 @@ def solve_on_locus(
 
 
 def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
-    """Return the map at x, the two directions (2 n + 2, 2) of the surface of orbits, and the step onto it."""
+    """Return the linearised map at x, the surface of orbits there, and the Newton step (2 n + 2,) onto
+    the surface.
+
+    The surface is given by two orthonormal directions (2 n + 2, 2) along which state and both parameters
+    stay on orbits.
+    """
     z, u, v = x[:-2], x[-2], x[-1]
     linear = problem.at(v).linear(z, u)
     ahead, back = (problem.at(v + sign * DIFFERENCE).gap(z, u) for sign in (1.0, -1.0))
@@ -269,7 +282,12 @@ def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
 def _gradient(
     problem: LocusProblem, x: Array, surface: Array, borders: Borders, test: float, sharp: bool
 ) -> Array:
-    """Change of the test function along the surface of orbits, as a vector (2 n + 2,) in it."""
+    """Return the change of the test function along the surface of orbits, as a vector (2 n + 2,) in the
+    surface.
+
+    Its two components are differences: forward ones over DIFFERENCE from the value `test` at x, or
+    central ones over SHARP.
+    """
 
     def test_at(along: Array, step: float) -> float:
         position = x + step * along
@@ -284,7 +302,9 @@ def _gradient(
 
 
 def _point(problem: LocusProblem, x: Array, borders: Borders, forward: Array, sharp: bool) -> LocusPoint:
-    """Return a point of a locus with its borders, gradient and tangent."""
+    """Return the solution x as a point of the locus: with new borders, gradient, and the tangent nearest
+    to `forward`.
+    """
     linear, surface, _ = _surface(problem, x)
     matrix = problem.matrix(linear)
     fresh = borders_of(matrix, borders)

@@ -63,7 +63,7 @@ def machine_period_map(model: Model, plan: BranchPlan) -> PeriodMap:
 
 def first_orbit(model: Model, plan: BranchPlan) -> BranchPoint:
     """Find a motion of period one: at the nominal speed, else at the first of TRIES speeds where a run
-    settles on it.
+    from rest settles on it. The speeds are spaced geometrically over the plan's range.
 
     Parameters
     ----------
@@ -102,7 +102,8 @@ def first_orbit(model: Model, plan: BranchPlan) -> BranchPoint:
 def random_starts(
     model: Model, plan: BranchPlan, speed_rpm: float, step: Callable[[], None] = lambda: None
 ) -> list[SettledMotion]:
-    """Run random starts around rest at a speed and return the motions on which they end.
+    """Run random starts around the static equilibrium at a speed, see scattered(), and return the motions
+    on which they end.
 
     Parameters
     ----------
@@ -130,7 +131,7 @@ def random_starts(
 
 
 def scattered(model: Model, spread: float, count: int, seed: int) -> Array:
-    """Draw random positions and velocities by mesh phase in the model's coordinates.
+    """Draw random offsets of positions and velocities by mesh phase in the model's coordinates.
 
     Displacements of the bodies, and rotations at the mesh radius, are uniform between -spread and spread. The
     part that the reduction neglects is left out. So the starts do not depend on the basis of the reduction.
@@ -217,7 +218,7 @@ def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[
     Returns
     -------
     list of StabilityLimit
-        Limits upwards and downwards in each parameter.
+        Limits upwards and downwards in speed (rpm) and in the factor on all torques.
     """
     speed = plan.nominal_rpm
     across = machine_plane(model, "torque").across(speed)
@@ -283,7 +284,11 @@ def machine_loci(
 
 
 def _at_speed(locus: Locus) -> list[float]:
-    """Return logarithms of the speeds at which a locus passes the machine, its second parameter unchanged."""
+    """Return the logarithms of the speeds at which a locus passes the factor 1, where the machine is the
+    given one.
+
+    They are interpolated linearly between its points.
+    """
     x = np.array([point.x[-2:] for point in locus.points])
     special_points_at = []
     for a, b in pairwise(x):

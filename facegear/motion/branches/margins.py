@@ -63,7 +63,7 @@ def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Branc
     Returns
     -------
     list of tuple
-        Number of the branch, and the orbit.
+        Index of the branch, and the orbit, one for each passage.
     """
     return [
         (number, point)
@@ -92,7 +92,7 @@ def stability_limits(
     Returns
     -------
     list of StabilityLimit
-        Limits sorted by branch.
+        Limits sorted by branch; up, then down, in each family.
     """
     originals = [(n, point) for n, point in stable_at(branches, value) if branches[n].image_of is None]
     limits = []
@@ -112,7 +112,11 @@ def stability_limits(
 def _limits_of(
     period_map: PeriodMap, number: int, point: BranchPoint, start: float, run: ContinuationSettings
 ) -> list[StabilityLimit]:
-    """Follow a motion up and down a parameter to the first loss of stability."""
+    """Follow a motion up and down a parameter from the value `start` to the first loss of stability, or
+    the end of the range.
+
+    The map `period_map` is over the family of that parameter; `number` is that of the motion's branch.
+    """
     start_point = at_parameter(period_map, point.z, float(np.log(start)))
     run = replace(run, to_first=True)
     sides = []
@@ -148,7 +152,8 @@ def coexistence_ranges(branches: Sequence[Branch]) -> list[tuple[float, float, t
     Returns
     -------
     list of tuple
-        Both ends in the parameter's unit, and the number of a branch for each motion.
+        Both ends in the parameter's unit, and the index of a branch for each stable motion (repeated if
+        it has several).
     """
     edges = sorted(
         {
@@ -175,7 +180,11 @@ def coexistence_ranges(branches: Sequence[Branch]) -> list[tuple[float, float, t
 
 
 def _stable_passages(branch: Branch, u: float) -> int:
-    """Count the passages of stable parts of a branch at a parameter's logarithm, away from special points."""
+    """Count how many stable orbits a branch has at a parameter's logarithm `u`, from the points on both
+    sides of it.
+
+    Between a point and a special point at which stability changes the nearer side decides.
+    """
     count, special_by_step = 0, {int(special.after): special for special in branch.of(*ENDING)}
     for index, (start_point, end_point) in enumerate(pairwise(branch.points)):
         if not min(start_point.u, end_point.u) <= u < max(start_point.u, end_point.u):
@@ -202,7 +211,7 @@ def passed_by(
     before, after : float
         Values of the parameter on both sides of the jump, in its unit.
     period : int
-        Number of mesh periods of the branch.
+        Number of mesh periods that the branch must have: that of the motion before the jump.
     slack : float
         Width by which the bracket is widened on both sides, in the parameter's unit.
 
@@ -226,7 +235,7 @@ def passed_by(
 
 
 def _ends_stability(branch: Branch, special: Special) -> bool:
-    """Whether stability changes at a special point of a branch."""
+    """Whether one of the two points beside a special point is stable and the other is not."""
     index = int(special.after)
     sides = branch.points[max(index, 0)], branch.points[min(index + 1, len(branch.points) - 1)]
     return sides[0].stable != sides[1].stable

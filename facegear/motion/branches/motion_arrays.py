@@ -40,7 +40,8 @@ def motions_to_arrays(speed_rpm: float, motions: Sequence[SettledMotion]) -> dic
     Returns
     -------
     dict
-        Arrays with the names and shapes of SHAPES, such as (motions,).
+        Arrays with the names and shapes of SHAPES, such as (motions,); `state` holds the weighted states
+        z.
     """
     return {
         "speed_rpm": np.array(speed_rpm),
@@ -53,7 +54,7 @@ def motions_to_arrays(speed_rpm: float, motions: Sequence[SettledMotion]) -> dic
 
 
 def motions_from_arrays(period_map: PeriodMap, arrays: Arrays) -> tuple[float, list[SettledMotion]]:
-    """Return the motions that to_arrays() has stored, with their orbits solved for again.
+    """Return the motions that motions_to_arrays() has stored, with their orbits solved for again.
 
     Parameters
     ----------
@@ -106,7 +107,8 @@ def special_arrays(branches: Sequence[Branch]) -> dict[str, AnyArray]:
     Returns
     -------
     dict
-        Arrays with the names and shapes of SPECIAL_SHAPES, such as (points,).
+        Arrays with the names and shapes of SPECIAL_SHAPES, such as (points,): index in LOCUS_KINDS, mesh
+        periods, x of BranchPoint, and number of the branch.
     """
     special_list = [
         (b, n, s) for n, b in enumerate(branches) if b.image_of is None for s in b.of(*LOCUS_KINDS)
@@ -170,7 +172,7 @@ class SweptMotion:
     error : float
         Distance of the sweep's state from the orbit, in length scales.
     reason : str
-        Why there is no orbit.
+        Why there is no orbit; empty if there is one.
     """
 
     direction: str
@@ -216,7 +218,9 @@ def swept_motions(
 
 
 def _orbit(period_map: PeriodMap, direction: str, piece: Piece, index: int) -> SweptMotion:
-    """Solve for the orbit of one row of a sweep."""
+    """Solve for the orbit of the motion at index `index` of a piece of a sweep; `reason` says why there
+    is none.
+    """
     speed, label, period = float(piece.speeds[index]), piece.labels[index], int(piece.period[index])
     u = float(np.log(speed))
     z = period_map.to_weighted(piece.state(index), u)
@@ -232,10 +236,12 @@ def _orbit(period_map: PeriodMap, direction: str, piece: Piece, index: int) -> S
 
 
 def _next_to(period_map: PeriodMap, z: Array, u: float, period: int) -> tuple[BranchPoint, int]:
-    """Return the orbit next to a state and its least period.
+    """Return the orbit next to a weighted state z (2 n,) at the parameter's logarithm u, and its least
+    period.
 
-    Where a long orbit magnifies the state's error too much for Newton's method, the orbit is that of a run
-    from the state at the branches' tolerance.
+    It is sought over `period` mesh periods. Where a long orbit magnifies the state's error too much for
+    Newton's method, a run from the state at the branches' tolerance leads to it. Raises NotConverged if
+    the run is not periodic.
     """
     try:
         point = at_parameter(period_map.over(period), z, u)
@@ -254,7 +260,9 @@ def _next_to(period_map: PeriodMap, z: Array, u: float, period: int) -> tuple[Br
 
 
 def _shortest_period(period_map: PeriodMap, point: BranchPoint, period: int) -> int:
-    """Return the smallest period of an orbit, a divisor of `period`."""
+    """Return the smallest divisor of `period`, in mesh periods, after which an orbit repeats to within
+    REPEATS.
+    """
     images = period_map.over(period).images(point.z, point.u)
     return next(
         divisor
@@ -264,7 +272,7 @@ def _shortest_period(period_map: PeriodMap, point: BranchPoint, period: int) -> 
 
 
 def nearest_branch(motion: SweptMotion, branches: Sequence[Branch]) -> tuple[int | None, float]:
-    """Find the branch on which a motion lies.
+    """Find the branch on which the orbit of a motion lies: the nearest, if it is closer than ON.
 
     Parameters
     ----------
@@ -276,7 +284,7 @@ def nearest_branch(motion: SweptMotion, branches: Sequence[Branch]) -> tuple[int
     Returns
     -------
     int or None
-        Number of the branch; None if there is none.
+        Index of the branch; None if there is none.
     float
         Distance of the motion's orbit from the branch in length scales, dimensionless; NaN if there is none.
     """

@@ -33,8 +33,8 @@ def coexistence_table(
     Returns
     -------
     DataFrame
-        Columns speed_rpm, motion, branch, fraction, error, starts. `branch` is a number, `not followed`, or
-        `not periodic`.
+        Columns speed_rpm, motion (class), branch, fraction (of the starts that end on it), error (its
+        standard error), starts (in all). `branch` is a number, `not followed`, or `not periodic`.
     """
     rows = []
     for speed, motions in motions_by_speed:
@@ -54,7 +54,9 @@ def coexistence_table(
 
 
 def _branch_of(motion: SettledMotion, branches: Sequence[Branch]) -> str:
-    """Return the number of the branch on which a motion lies, as text, or why there is none."""
+    """Return the number of the first branch on which a motion lies, as text; else `not periodic` or `not
+    followed`.
+    """
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):
@@ -74,7 +76,8 @@ def range_table(ranges: Sequence[tuple[float, float, tuple[int, ...]]]) -> pd.Da
     Returns
     -------
     DataFrame
-        Columns from_rpm, to_rpm, motions (their number), branches.
+        Columns from_rpm, to_rpm, motions (their number), branches (numbers separated by spaces, one a
+        motion).
     """
     rows = [(low, high, len(numbers), " ".join(map(str, numbers))) for low, high, numbers in ranges]
     return pd.DataFrame(rows, columns=["from_rpm", "to_rpm", "motions", "branches"])
@@ -92,7 +95,7 @@ def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
     -------
     DataFrame
         Columns branch, period, parameter, direction, start, kind, value, margin. `kind` is `none` where the
-        range ends first; `margin` is value less start.
+        range ends first; `margin` is value less start, in the parameter's unit.
     """
     rows = [
         {
@@ -156,7 +159,7 @@ def swept_table(
 
 
 def _not_followed(period: int, longest: int) -> str:
-    """Say why the orbit of a period lies on no branch."""
+    """Return the note on an orbit that lies on no branch: its period, or merely that it was not followed."""
     if period > longest:
         return f"the orbit is found; periods above longest_start_period = {longest} are not followed"
     return "not followed"
@@ -218,7 +221,11 @@ def jump_table(
 def _last_class(
     direction: str, before: float, after: float, sweep_motions: Sequence[SweptMotion], spacing: float
 ) -> str | None:
-    """Return the class of the sweep's periodic motion at most one step before a jump, or None."""
+    """Return the label of the sweep's periodic motion nearest before a jump in the direction of running,
+    or None.
+
+    It lies at most `spacing` (rpm) before the bracket's first end.
+    """
     onward = np.sign(after - before)
     behind = {
         onward * (before - row.speed_rpm): row.label
@@ -231,8 +238,11 @@ def _last_class(
 def _explain_jump(
     before: float, after: float, label: str, branches: Sequence[Branch], resolution: float, spacing: float
 ) -> dict[str, object]:
-    """Return the special point that explains a jump as entries of its row, or a note that says why there
-    is none.
+    """Return the columns branch, kind, speed_rpm and note of a jump: the special point that explains it,
+    or why there is none.
+
+    `before` and `after` are the ends of its bracket, `resolution` and `spacing` as in jump_table(), all
+    in rpm; `label` is the class of the motion before it.
     """
     if not label.startswith("period-"):
         return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}

@@ -47,9 +47,9 @@ class Linear:
     divergence : float
         Integral of the trace of the system's Jacobian over the period.
     inverses : dict
-        Inverses of the matrix bordered by a row, by the row's bytes.
+        Cache of bordered_matrix() inverses, by the bytes of the row (row.tobytes()); at most one entry.
     rates : dict
-        Change of the matrix along a direction, by the direction's bytes; see PeriodMap.matrix_rate().
+        Cache of the change of the matrix along directions, by their bytes; see PeriodMap.matrix_rate().
     """
 
     gap: Array
@@ -66,8 +66,9 @@ class Linear:
 class PeriodMap:
     """Map P(z, u) of a weighted state over `period` mesh periods at one parameter.
 
-    `z` (2 n,) holds positions, then velocities by mesh phase, as mesh deflections over the length scale. `u`
-    is the logarithm of the family's parameter.
+    A weighted state `z` (2 n,) holds positions, then velocities by mesh phase. Each is multiplied by the
+    mesh deflection that a unit of its coordinate makes, over the length scale, and so dimensionless. `u`
+    is the natural logarithm of the family's parameter. A fixed point P(z, u) = z is a periodic motion.
 
     Attributes
     ----------
@@ -78,7 +79,8 @@ class PeriodMap:
     tolerance : float
         Approximate error of orbits, in length scales, and of special points, relative to the parameter.
     memory : dict
-        Integrators and neutral directions that are used again.
+        Cache: an integrator for each structure of system, whose scratch space is shared, and neutral
+        directions by the contacts that are closed. All maps made by over() share it.
     """
 
     family: Family
@@ -88,11 +90,13 @@ class PeriodMap:
 
     @property
     def step_tolerance(self) -> float:
-        """Local error of a step over the length scale."""
+        """Local error of an integration step over the length scale: STEPS times the tolerance, at least
+        FINEST.
+        """
         return max(STEPS * self.tolerance, FINEST)
 
     def over(self, period: int) -> "PeriodMap":
-        """Return the map over another number of mesh periods.
+        """Return the map over another number of mesh periods, in all and not as a multiple of this one's.
 
         Parameters
         ----------
@@ -147,7 +151,7 @@ class PeriodMap:
         Returns
         -------
         (2 n,) array
-            Mesh deflection over the length scale per unit of each coordinate, 1/m.
+            Mesh deflection over the length scale per unit of each coordinate, 1/m; the n weights twice.
         """
         return np.tile(integrator.weights / integrator.scale, 2)
 
@@ -170,7 +174,7 @@ class PeriodMap:
         return integrator.by_time(self._by_phase(integrator, z))
 
     def _by_phase(self, integrator: Integrator, z: Array) -> Array:
-        """Return the state by phase (2, n) from weighted coordinates."""
+        """Return the state by phase (2, n), m and m/rad, of a weighted state z (2 n,)."""
         return (z / self.weights(integrator)).reshape(2, -1)
 
     def to_weighted(self, state: State, u: float) -> Array:
@@ -192,7 +196,7 @@ class PeriodMap:
         return self.weights(integrator) * integrator.by_phase(state).ravel()
 
     def gap(self, z: Array, u: float) -> Array:
-        """Compute P(z, u) - z, the change of a state over the period.
+        """Compute P(z, u) - z, the change of a state over the period; it vanishes on a periodic orbit.
 
         Parameters
         ----------
@@ -296,7 +300,10 @@ class PeriodMap:
         return linear.rates[key]
 
     def _rigid(self, integrator: Integrator, contact: Mask, weights: Array) -> Array:
-        """Return orthonormal shifts that neither a mesh in contact nor a bearing feels; their multiplier is
+        """Return orthonormal shifts (2 n, k) of weighted states that neither a closed contact nor a
+        bearing feels.
+
+        `contact` (m,) tells which rows are ever in contact. These shifts are neutral: their multiplier is
         one.
         """
         key = (contact.tobytes(), weights.tobytes())
@@ -349,7 +356,8 @@ class PeriodMap:
         Returns
         -------
         tuple of array
-            Lower and upper edge (m,) of each mesh, dimensionless; infinite where a mesh never opens.
+            Lower and upper edge (m,) of each mesh, dimensionless; minus and plus infinity where a mesh
+            never opens.
         """
         integrator = self.integrator(u)
         lower, upper = (edge / integrator.scale for edge in integrator.edges)

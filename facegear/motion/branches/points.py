@@ -55,11 +55,12 @@ class BranchPoint:
     Attributes
     ----------
     x : (2 n + 1,) array
-        Weighted state and logarithm of the parameter.
+        Weighted state z, see PeriodMap, then the natural logarithm u of the parameter.
     tangent : (2 n + 1,) array
-        Unit tangent of the branch.
+        Unit tangent of the branch at x, pointing in the direction in which the branch is followed.
     parity : float
-        Sign of the bordered determinant, which changes at a branch point only.
+        Sign (1 or -1) of the determinant of bordered_matrix(); along a branch it changes at a branch
+        point only.
     linear : Linear
         Linearised period map at the state.
     extrema : (m, 2, most) array
@@ -74,7 +75,7 @@ class BranchPoint:
 
     @property
     def z(self) -> Array:
-        """State (2 n,) at the start of the period, over the length scale."""
+        """Weighted state (2 n,) at the start of the period, dimensionless, see PeriodMap."""
         return self.x[:-1]
 
     @property
@@ -89,13 +90,13 @@ class BranchPoint:
 
     @cached_property
     def multipliers(self) -> ComplexArray:
-        """Floquet multipliers (2 n - k,), largest first, without those of k neutral directions."""
+        """Floquet multipliers (2 n - k,), largest modulus first, without those of k neutral directions."""
         values = without_neutral(np.linalg.eigvals(self.linear.matrix), self.linear.neutral.shape[1])
         return values[by_modulus(values)]
 
     @cached_property
     def real(self) -> Array:
-        """Real multipliers in rising order."""
+        """Real multipliers in rising order, with those that REAL_PAIR takes for real."""
         values = self.multipliers
         return np.sort(values[np.abs(values.imag) <= REAL_PAIR * (np.abs(values) > 0.5)].real)
 
@@ -122,7 +123,9 @@ class BranchPoint:
 
     @property
     def stable(self) -> bool:
-        """Whether no multiplier lies outside the unit circle."""
+        """Whether no multiplier is outside the unit circle, see `outside`; neutral directions are left
+        out.
+        """
         return self.outside == (0, 0, 0)
 
 
@@ -146,14 +149,18 @@ def without_neutral(values: AnyArray, neutral: int) -> ComplexArray:
 
 
 def bordered_matrix(linear: Linear, row: Array) -> Array:
-    """Assemble [M - I, P_u, V; row, 0; V^T, 0, 0] with the neutral directions V.
+    """Assemble the matrix [M - I, P_u, V; row, 0; V^T, 0, 0] of Newton's method for an orbit.
+
+    M is the derivative of the map P by the state, P_u that by the parameter's logarithm. The row stands
+    for the condition that selects an orbit of the branch; the columns V for shifts along neutral
+    directions.
 
     Parameters
     ----------
     linear : Linear
         Linearised map with the matrix M, the slope P_u and k neutral directions V.
     row : (2 n + 1,) array
-        Bordering condition, dimensionless.
+        Left side of the condition, as in correct(), dimensionless.
 
     Returns
     -------
@@ -175,7 +182,9 @@ def correct(
 ) -> tuple[Array, Linear]:
     """Find the orbit next to a guess with row . (x - guess) = 0, by Newton's method.
 
-    A matrix from nearby is used as long as each step gains enough.
+    Quasi-Newton steps with the matrix of `linear` come first, while each gains enough. Newton steps with
+    a new matrix follow, at most NEWTON_STEPS of them, until the change over the period is at most the
+    goal of _goal().
 
     Parameters
     ----------
@@ -184,7 +193,7 @@ def correct(
     guess : (2 n + 1,) array
         Weighted state and logarithm of the parameter, dimensionless.
     row : (2 n + 1,) array
-        Condition that selects the orbit, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the orbit is sought, dimensionless.
     linear : Linear, optional
         Linearised map near the guess.
     farthest : float
@@ -228,7 +237,7 @@ def correct(
 
 
 def _describe_location(period_map: PeriodMap, x: Array) -> str:
-    """Return name and value of the parameter at a point."""
+    """Return name and value of the parameter at x (2 n + 1,) for messages: `speed_rpm = 1234.5`."""
     return f"{period_map.family.name} = {np.exp(x[-1]):.9g}"
 
 
@@ -266,14 +275,21 @@ def correct_state(period_map: PeriodMap, guess: Array, row: Array, linear: Linea
 
 
 def _goal(period_map: PeriodMap) -> float:
-    """Change over the period at which an orbit counts as found: below the errors of the steps."""
+    """Return the largest component of the change over a period, dimensionless, at which an orbit is
+    found.
+    """
     return max(GOAL_OF_TOLERANCE * period_map.step_tolerance, MIN_GOAL)
 
 
 def _by_chord(
     period_map: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
 ) -> tuple[Array, float]:
-    """Take Broyden's steps from a nearby matrix while they gain; return the best point and its change."""
+    """Take Broyden's quasi-Newton steps from `x` with the bordered inverse of `linear` while each reduces
+    the change.
+
+    The condition is row . (x - guess) = 0. Return the best point (2 n + 1,) and the largest component of
+    its change over the period, dimensionless; it need not have reached `goal`.
+    """
     inverse = _bordered_inverse(linear, row)
     right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
     best, nearest, before = np.inf, x, np.zeros(len(inverse))
@@ -300,7 +316,11 @@ def _by_chord(
 
 
 def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) -> Array:
-    """Return the Newton step of the bordered system, neutral directions excluded."""
+    """Return the Newton step (2 n + 1,) of the bordered system for a gap (2 n,) and the displacement x -
+    guess.
+
+    After the step row . (x - guess) = 0; it has no component along neutral directions.
+    """
     right = np.zeros(gap.size + 1 + linear.neutral.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ displacement
     right[gap.size + 1 :] = -linear.neutral.T @ displacement[:-1]
@@ -308,7 +328,9 @@ def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) ->
 
 
 def _bordered_inverse(linear: Linear, row: Array) -> Array:
-    """Return the inverse of bordered_matrix(); the inverse for the last row used is stored."""
+    """Return the inverse (2 n + 1 + k, 2 n + 1 + k) of bordered_matrix(); `linear` stores that of the
+    last row.
+    """
     key = row.tobytes()
     if key not in linear.inverses:
         linear.inverses.clear()
@@ -342,7 +364,7 @@ def make_point(period_map: PeriodMap, x: Array, linear: Linear, forward: Array) 
     linear : Linear
         Linearised map at x.
     forward : (2 n + 1,) array
-        Direction along which the tangent points, dimensionless.
+        Direction with which the tangent makes an angle below 90 degrees, dimensionless.
 
     Returns
     -------
@@ -378,7 +400,7 @@ def solve_point(
     guess : (2 n + 1,) array
         Weighted state and logarithm of the parameter, dimensionless.
     row : (2 n + 1,) array
-        Condition that selects the orbit, dimensionless.
+        Normal of the plane row . (x - guess) = 0 in which the orbit is sought, dimensionless.
     forward : (2 n + 1,) array
         Direction along which the tangent points, dimensionless.
     linear : Linear, optional

@@ -19,7 +19,7 @@ EXACT = 1e-13
 
 
 def cubic(start_point: BranchPoint, end_point: BranchPoint) -> Array:
-    """Cubic through two points of a branch along their tangents.
+    """Compute the cubic x(t) through two points of a branch, with the directions of their tangents.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def cubic(start_point: BranchPoint, end_point: BranchPoint) -> Array:
     Returns
     -------
     (4, 2 n + 1) array
-        Coefficients of ascending powers of the fraction of the chord, dimensionless.
+        Coefficients of ascending powers of t, which is 0 at the start and 1 at the end, dimensionless.
     """
     chord = end_point.x - start_point.x
     first, second = (_slope(chord, point.tangent) for point in (start_point, end_point))
@@ -37,9 +37,11 @@ def cubic(start_point: BranchPoint, end_point: BranchPoint) -> Array:
 
 
 def _slope(chord: Array, tangent: Array) -> Array:
-    """Scale a tangent to the chord's length along it.
+    """Return a tangent scaled to dx/dt of a cubic: so that its component along the chord is the chord's
+    length.
 
-    At a junction, where the tangent belongs to another branch, return the chord itself.
+    At a junction, where the tangent belongs to another branch, return the chord itself. Both are (2 n +
+    1,).
     """
     along = chord @ tangent
     length = np.linalg.norm(chord)
@@ -47,7 +49,11 @@ def _slope(chord: Array, tangent: Array) -> Array:
 
 
 class Segment:
-    """Points of a branch between two neighbours, by their fraction of the chord.
+    """Points of a branch between two neighbours, by their position as a fraction of the chord from the
+    first.
+
+    The point at a fraction is the orbit in the plane across the chord there. Points that were solved for
+    are stored.
 
     Parameters
     ----------
@@ -85,7 +91,8 @@ class Segment:
         return self.points_by_fraction[fraction]
 
     def extrema(self, fraction: float) -> Array:
-        """Extrema of the deflections at a fraction of the chord, without the matrix of the map.
+        """Return the extrema of the deflections of the orbit at a fraction of the chord, without a new
+        matrix of the map.
 
         Parameters
         ----------
@@ -153,13 +160,15 @@ class Segment:
         return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
     def _near(self, fraction: float) -> BranchPoint:
-        """Return the computed point whose fraction along the segment is nearest."""
+        """Return the point, among those already solved for, whose fraction of the chord is nearest."""
         return self.points_by_fraction[
             min(self.points_by_fraction, key=lambda candidate: abs(candidate - fraction))
         ]
 
     def _guess(self, fraction: float) -> Array:
-        """Interpolate between the nearest known points by a cubic along their tangents."""
+        """Interpolate x (2 n + 1,) at a fraction of the chord by a cubic between the solved points on
+        both sides.
+        """
         low = max(candidate for candidate in self.points_by_fraction if candidate < fraction)
         high = min(candidate for candidate in self.points_by_fraction if candidate > fraction)
         t = (fraction - low) / (high - low)
@@ -203,6 +212,9 @@ def reversal(
     period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint
 ) -> tuple[BranchPoint, BranchPoint] | None:
     """Find where a branch of an even number of periods runs into its own image, shifted by half of them.
+
+    There the change of the state over half the periods vanishes: the orbit has half the period, and the
+    branch continues as its own image.
 
     Parameters
     ----------
@@ -292,7 +304,9 @@ def step_along(
 
 
 def _ahead(current_point: BranchPoint, before: BranchPoint | None, step: float) -> Array:
-    """Predict the point one step ahead."""
+    """Predict x (2 n + 1,) one step ahead, along the tangent and bent as between the point `before` and
+    this one.
+    """
     guess = current_point.x + step * current_point.tangent
     if before is None:
         return guess
@@ -301,7 +315,11 @@ def _ahead(current_point: BranchPoint, before: BranchPoint | None, step: float) 
 
 
 def _refusal(current_point: BranchPoint, next_point: BranchPoint, step: float) -> str:
-    """Return why a step is not accepted, or an empty string."""
+    """Return why a step is not accepted, or an empty string.
+
+    Refused are steps of length `step` between whose ends the tangent turns too far, the parity changes,
+    or multipliers near the unit circle move too far. Short steps at which bodies come loose are accepted.
+    """
     chord = (next_point.x - current_point.x) / np.linalg.norm(next_point.x - current_point.x)
     straight = min(
         current_point.tangent @ next_point.tangent, chord @ current_point.tangent, chord @ next_point.tangent
@@ -318,7 +336,10 @@ def _refusal(current_point: BranchPoint, next_point: BranchPoint, step: float) -
 
 
 def _drift(current_point: BranchPoint, next_point: BranchPoint) -> float:
-    """Largest change of a modulus, in sorted order, among those near the unit circle."""
+    """Return the largest relative change of a multiplier's modulus between two points, in sorted order.
+
+    Only moduli above 0.6 count. The result is 0 where the numbers of multipliers differ.
+    """
     first, second = np.abs(current_point.multipliers), np.abs(next_point.multipliers)
     if first.size != second.size:
         return 0.0
@@ -330,8 +351,10 @@ def _drift(current_point: BranchPoint, next_point: BranchPoint) -> float:
 def next_length(
     step: float, before: BranchPoint | None, current_point: BranchPoint, next_point: BranchPoint
 ) -> float:
-    """Choose the next step so that it turns by TURN and needs a correction of AIM, as far as the last step
-    tells.
+    """Choose the length of the next step so that the tangent turns by TURN and the correction is AIM
+    times the step.
+
+    Both are extrapolated from the last step. The length changes by a factor of 0.5 to FASTEST.
 
     Parameters
     ----------

@@ -21,7 +21,13 @@ from facegear.motion.branches.segment import Segment
 
 
 class Kind(StrEnum):
-    """Kinds of special points."""
+    """Kinds of special points of a branch.
+
+    FOLD: the parameter turns back. DOUBLING: a multiplier passes -1. TORUS: a complex pair passes the
+    unit circle. BRANCH: another branch crosses, a multiplier is 1. GRAZE: an extremum of a deflection
+    touches an edge of the backlash. NEUTRAL: a body loses its last contact or gets one, and the number of
+    neutral directions changes.
+    """
 
     FOLD = "fold"
     DOUBLING = "period doubling"
@@ -42,9 +48,9 @@ class Special:
     point : BranchPoint
         The motion at it.
     multiplier : complex
-        The critical multiplier (NaN at a graze).
+        The Floquet multiplier that passes the unit circle there (NaN at a graze).
     proof : str
-        Evidence that it is a special point.
+        Evidence that it is a special point, as text with numbers.
     after : float
         Position along the branch: index of the point before plus the fraction of the way to the next.
     meshes : tuple of int
@@ -81,7 +87,7 @@ def evidence(
     complex
         Floquet multiplier, dimensionless.
     str
-        Evidence.
+        Evidence as one line of text with the numbers that prove the kind.
     """
     if kind is Kind.GRAZE:
         return complex(np.nan), f"an extreme lies {abs(off):.1e} length scales from the edge"
@@ -106,7 +112,7 @@ def evidence(
 
 
 def _nearest(values: ComplexArray, goal: float) -> complex:
-    """Return the complex value nearest to a real goal."""
+    """Return the one of complex values (m,) that is nearest to a real goal."""
     return complex(values[np.argmin(np.abs(values - goal))])
 
 
@@ -170,12 +176,15 @@ def is_damped(segment: Segment, low: float, high: float) -> bool:
 
 
 def _distance(point: BranchPoint) -> float:
-    """Return the distance from the unit circle of the multiplier nearest to it."""
+    """Return the distance from the unit circle, | |multiplier| - 1 |, of the multiplier nearest to it."""
     return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
 
 
 def hidden_change(segment: Segment, low: float, high: float) -> float | None:
-    """Find where stability may change in a stretch although its ends do not show it.
+    """Find where stability may change and change back in a stretch, which its ends do not show.
+
+    Matrices are interpolated between the ends by cubics, and their multipliers examined. Where the
+    multipliers turn too far for a cubic, the answer is the middle of the stretch.
 
     Parameters
     ----------
@@ -218,8 +227,10 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _widest_turn(distance: float) -> float:
-    """Return the angle, rad, over which a cubic errs by half the distance of the multipliers from the unit
-    circle.
+    """Return the largest angle, rad, that multipliers may turn in a stretch that is interpolated.
+
+    There a cubic errs by half the `distance` of the multipliers from the unit circle; it is kept from
+    NARROWEST_TURN to WIDEST_TURN.
     """
     if distance < UNDAMPED:
         return WIDEST_TURN
@@ -227,7 +238,12 @@ def _widest_turn(distance: float) -> float:
 
 
 def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
-    """Return the largest change of a multiplier near the unit circle by a change (2 n, 2 n) of the matrix."""
+    """Return the largest change of a multiplier near the unit circle by a small change (2 n, 2 n) of the
+    matrix.
+
+    By first-order perturbation; `neutral` multipliers nearest to 1 are left out. It is an angle in rad
+    for one on the circle.
+    """
     values, vectors = np.linalg.eig(point.linear.matrix)
     try:
         multiplier_changes = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
@@ -240,8 +256,9 @@ def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
 
 
 def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
-    """Return matrices (K, 2 n, 2 n) at fractions (K,) of a stretch from the matrices and slopes at
-    its ends.
+    """Return matrices (K, 2 n, 2 n) at fractions `looks` (K,) of a stretch, by a Hermite cubic.
+
+    `matrices` are those at both ends, `changes` their derivatives by the fraction there.
     """
     step = matrices[1] - matrices[0]
     start, end = changes
@@ -257,7 +274,9 @@ def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> A
 
 
 def _outside(values: ComplexArray, margin: float) -> Integers:
-    """Count multipliers (K, m) as BranchPoint.outside does, but beyond 1 + margin, shape (K, 3)."""
+    """Count the multipliers (K, m) beyond 1 + margin at K positions, by three kinds as
+    BranchPoint.outside, (K, 3).
+    """
     size = np.abs(values)
     beyond, real = size > 1.0 + margin, np.abs(values.imag) <= REAL_PAIR
     classes = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
@@ -265,10 +284,11 @@ def _outside(values: ComplexArray, margin: float) -> Integers:
 
 
 def _returning(surely: Integers, perhaps: Integers) -> int | None:
-    """Return the number of the first look at which a count goes against the change from end to end, or None.
+    """Return the index of the first of K looks at which a count goes against the change from end to end,
+    or None.
 
-    `surely` and `perhaps` are the counts (K + 2, 3) outside by more than, and up to, the error of the
-    matrices.
+    `surely` and `perhaps` are counts (K + 2, 3) as of _outside(), ends included: of multipliers outside
+    the circle by more than the error of the matrices, and of those that may be outside within it.
     """
     for sure, possible in zip(surely.T, perhaps.T, strict=True):
         lower, upper = sorted((sure[0], sure[-1]))
@@ -286,10 +306,12 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
 
 
 def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
-    """Return the index of the intermediate point at which multipliers may pass the unit circle, or None.
+    """Return the index of the look at which multipliers come so near the unit circle that they may pass
+    it, or None.
 
-    `values`: multipliers at the intermediate points; `ends`: distances from the circle at both ends of the
-    stretch; `error`: error of the interpolated multipliers.
+    `values` are multipliers (K, m) at fractions `looks` (K,), `ends` the distances from the circle at
+    both ends, and `error` is that of the interpolated multipliers. The approach counts beyond a straight
+    line between the ends.
     """
     nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
     before = ends[0] + looks * (ends[1] - ends[0])

@@ -40,7 +40,7 @@ class UnfollowedMotion:
     period : int
         Number of mesh periods.
     value : float
-        The parameter at it.
+        Parameter at it, in its unit.
     origin : str
         Where it was met.
     reason : str
@@ -101,7 +101,7 @@ def survey(
     max_branches : int
         Largest number of branches that are followed, without their images.
     progress : callable
-        Called with a line about each branch.
+        Called with one line of text about each branch.
 
     Returns
     -------
@@ -117,6 +117,12 @@ def survey(
 
 @dataclass(eq=False)
 class _Search:
+    """Branches found so far by survey(), and the motions that were not followed.
+
+    `visited_points` are special points at which branches begin or end: mesh periods of the branch that
+    leaves there, and logarithm of the parameter. The other fields are arguments of survey().
+    """
+
     run: ContinuationSettings
     longest_period: int
     max_branches: int
@@ -126,7 +132,11 @@ class _Search:
     visited_points: list[tuple[int, float]] = field(default_factory=list)
 
     def follow(self, period_map: PeriodMap, point: BranchPoint, origin: str) -> None:
-        """Follow a motion that lies on no branch, and all that leaves its branch."""
+        """Follow the branch of a motion, unless it lies on a known one, and all branches that leave it,
+        and so on.
+
+        `origin` says where the motion was found.
+        """
         if self._is_known(period_map.period, point):
             return
         branch = self._try_branch(
@@ -139,8 +149,9 @@ class _Search:
             todo += self._children(todo.pop(0))
 
     def _children(self, parent: Branch) -> list[Branch]:
-        """Return new branches that leave a branch; a special point at which a branch begins or ends is
-        left once.
+        """Return the new branches that leave a branch at its period doublings and branch points.
+
+        A special point at which a branch begins or ends is left once.
         """
         children = []
         for special in parent.of(Kind.DOUBLING, Kind.BRANCH):
@@ -161,9 +172,10 @@ class _Search:
     def _try_branch(
         self, attempt: Callable[[], Branch], period: int, value: float, origin: str
     ) -> Branch | None:
-        """Try to follow a new branch and store it.
+        """Call `attempt` to follow a new branch, and store the branch with its images.
 
-        Returns None if the branch is known already, or, with a note, if it cannot be followed.
+        Return None if the branch is known already, or, with a note of `value` and `origin`, if it cannot
+        be followed.
         """
         if sum(branch.image_of is None for branch in self.branches) >= self.max_branches:
             reason = f"{self.max_branches} branches are followed already"
@@ -189,7 +201,9 @@ class _Search:
         return branch
 
     def _add_images(self, branch: Branch) -> None:
-        """Store the images of a branch that are not known already; a symmetric branch is its own image."""
+        """Store the images under all symmetries of a branch just stored, but those known already; a
+        symmetric branch has none.
+        """
         number, period_map = len(self.branches) - 1, branch.period_map
         probe = branch.points[len(branch.points) // 2]
         branch_images = period_map.images(probe.z, probe.u)
@@ -209,11 +223,13 @@ class _Search:
                 )
 
     def _is_known(self, period: int, point: BranchPoint) -> bool:
-        """Whether a point lies on a branch that was followed already."""
+        """Whether a point lies on a branch of this many mesh periods that was followed already."""
         return any(lies_on(branch, point, period) for branch in self.branches)
 
     def _was_met(self, period: int, u: float) -> bool:
-        """Whether a special point of this period at this parameter was visited before."""
+        """Whether a special point of a branch of `period` at the parameter's logarithm `u` was visited
+        before.
+        """
         return any(
             visited_period == period and abs(u - ended_at) < SAME_POINT
             for visited_period, ended_at in self.visited_points
@@ -221,7 +237,9 @@ class _Search:
 
 
 def _leave(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
-    """Follow the branch that leaves at a period doubling or a loss of symmetry."""
+    """Follow the branch that leaves at a period doubling or, else, at a branch point where symmetry is
+    lost.
+    """
     return (
         doubled_branch(period_map, special, run)
         if special.kind is Kind.DOUBLING
@@ -287,7 +305,9 @@ def survey_summary(
 
 
 def _margin(loss: StabilityLimit) -> str:
-    """Say in words where a branch loses its stability, or up to where it does not."""
+    """Return a line on the first loss of stability of a branch in one direction, or up to where there is
+    none.
+    """
     if loss.special is None:
         return f"branch {loss.branch}: no loss up to {loss.parameter} = {loss.end_value:.6g}"
     kind = loss.special.kind.value

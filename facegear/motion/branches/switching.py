@@ -71,7 +71,7 @@ def image_branch(branch: Branch, symmetry: Symmetry) -> Branch:
     Returns
     -------
     Branch
-        Image with the same number of points.
+        Image with the same number of points; its `image_of` is still that of the branch.
 
     Raises
     ------
@@ -101,7 +101,8 @@ def image_point(period_map: PeriodMap, point: BranchPoint, symmetry: Symmetry) -
     Returns
     -------
     BranchPoint
-        The image; its tangent is a difference over SMALL along the original's.
+        The image; its tangent is a difference over SMALL along the original's, and its matrix is computed
+        anew.
 
     Raises
     ------
@@ -129,7 +130,9 @@ def image_point(period_map: PeriodMap, point: BranchPoint, symmetry: Symmetry) -
 
 
 def _image_special(period_map: PeriodMap, special: Special, symmetry: Symmetry) -> Special:
-    """Return a special point's mirror image, with meshes and signs exchanged."""
+    """Return the image of a special point: its point mapped, and the meshes and edge of a graze exchanged
+    by the symmetry.
+    """
     count = symmetry.contacts.size
     sources = symmetry.contacts.tolist()
     meshes = tuple(sources.index(mesh) if mesh < count else mesh for mesh in special.meshes)
@@ -177,7 +180,7 @@ def doubled_branch(period_map: PeriodMap, special: Special, run: ContinuationSet
     direction = _direction(special.point.linear.matrix, -1.0)
 
     def is_doubled(point: BranchPoint) -> bool:
-        """Whether the motion differs from itself a period later, other than the branch that doubles."""
+        """Whether an orbit changes over the single period: it does not on the branch that doubles."""
         change = np.linalg.norm(period_map.gap(point.z, point.u))
         return bool(change > LEFT * np.linalg.norm(point.x - special.point.x))
 
@@ -217,7 +220,12 @@ def symmetry_broken_branch(period_map: PeriodMap, special: Special, run: Continu
 def _from(
     period_map: PeriodMap, special: Special, start: BranchPoint, run: ContinuationSettings, end: BranchEnd
 ) -> Branch:
-    """Follow the branch through `start` away from the special point, which becomes its first point."""
+    """Follow the branch through `start` away from a special point, which becomes its first point, and end
+    it with `end`.
+
+    `end` says why the branch ends at the special point. Grazes and special points between it and `start`
+    are located, too.
+    """
     child = follow(period_map, start, run, both_ways=False)
     origin = special.point
     away = start.x - origin.x
@@ -241,8 +249,11 @@ def _from(
 def _first_stretch(
     period_map: PeriodMap, root: BranchPoint, start: BranchPoint
 ) -> tuple[list[BranchPoint], list[Special]]:
-    """Return the points from a special point up to the orbit beside it, without that one, and the
-    special points.
+    """Return the points from a special point `root` to the orbit `start` beside it, without that one, and
+    the specials between.
+
+    A point at NEAR_ROOT of the way divides the stretch: between it and the root only grazes are looked
+    for.
     """
     near = Segment(period_map, replace(root, linear=start.linear), start).at(NEAR_ROOT)
     division = locate(period_map, near, start)
@@ -251,7 +262,8 @@ def _first_stretch(
 
 
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
-    """Follow the branch through the orbit next to a state at a value of the parameter.
+    """Find the orbit next to a state at a value of the parameter by Newton's method, and follow its
+    branch both ways.
 
     Parameters
     ----------
@@ -279,7 +291,9 @@ def through(period_map: PeriodMap, state: State, value: float, run: Continuation
 
 
 def _direction(matrix: Array, goal: float) -> Array:
-    """Real unit eigenvector of the multiplier nearest to a real goal."""
+    """Return the real part, of unit length (2 n,), of the eigenvector whose multiplier is nearest to a
+    goal (1 or -1).
+    """
     values, vectors = np.linalg.eig(matrix)
     vector = vectors[:, np.argmin(np.abs(values - goal))].real
     return vector / np.linalg.norm(vector)
@@ -291,10 +305,12 @@ def _aside(
     direction: Array,
     is_new: Callable[[BranchPoint], bool] = lambda point: True,
 ) -> BranchPoint:
-    """Find an orbit at some distance along a direction, with free parameter and a tangent away from the
-    point.
+    """Find an orbit at a distance (one of ASIDE) from a special point along a direction (2 n,) of the
+    weighted states.
 
-    `is_new` says whether an orbit lies on another branch than the special point.
+    The parameter is free. The first orbit counts that lies along the direction and for which `is_new` is
+    true: it lies on another branch than the special point. Its tangent points away from the special
+    point. Raises NotConverged.
     """
     row = np.append(direction, 0.0)
     origin = special.point.x

@@ -84,7 +84,7 @@ SAMPLES = 64
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Measures of each mesh in a periodic motion.
+    """Deflections, force and contact times of each mesh in a periodic motion.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class Measures:
 
 
 def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
-    """Compute the measures of an orbit, by the same sums as those of a sweep.
+    """Compute the measures of an orbit by a run over its period, by the same sums as those of a sweep.
 
     Parameters
     ----------
@@ -156,7 +156,8 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        BRANCH_COLUMNS.
+        BRANCH_COLUMNS. `arc` is Branch.arc; `peak_force_n` is the largest elastic force; fractions are of
+        the time.
     """
     frames = []
     for number, branch in enumerate(branches):
@@ -191,7 +192,7 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def multiplier_table(branches: Sequence[Branch]) -> pd.DataFrame:
-    """Tabulate the largest multipliers of each point.
+    """Tabulate the SHOWN_MULTIPLIERS largest multipliers of each point, one row for each multiplier.
 
     Parameters
     ----------
@@ -225,7 +226,9 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        SPECIAL_COLUMNS.
+        SPECIAL_COLUMNS. `arc` is Branch.arc at the point, `angle_deg` the angle of the multiplier;
+        `stable_before` and `stable_after` are those of the branch's points on both sides; `meshes` and
+        `edge` are set at grazes.
     """
     rows = []
     names = [name.replace(" ", "_") for name in layout.mesh_names]
@@ -255,8 +258,10 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def _edge(special: Special, meshes: int) -> str:
-    """Return the edge that is grazed; for one-sided flanks "upper" is the drive flank and "lower" the
-    back flank.
+    """Return which edge a graze touches, "upper" or "lower", and "" for other special points.
+
+    With one-sided flanks, whose indices run over 2 `meshes` contacts, "upper" is the drive flank and
+    "lower" the back flank.
     """
     if not special.meshes:
         return ""
@@ -274,7 +279,8 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried. `image_of` is
+        Columns branch, image_of, period, points (their number), from_rpm, to_rpm (extremes of speed),
+        first_end, last_end (reasons, see BranchEnd), tried (Branch.failed_attempts). `image_of` is
         the branch of which it is the image under a symmetry of the machine, or empty.
     """
     rows = [
@@ -305,7 +311,7 @@ def unfollowed_table(motions: Sequence[UnfollowedMotion]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns period, speed_rpm, origin, reason.
+        Columns period, speed_rpm, origin, reason, see UnfollowedMotion.
     """
     rows = [(row.period, row.value, row.origin, row.reason) for row in motions]
     return pd.DataFrame(rows, columns=["period", "speed_rpm", "origin", "reason"])
@@ -322,7 +328,8 @@ def locus_table(loci: Sequence[Locus]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns locus, kind, parameter, factor, speed_rpm, corner.
+        Columns locus (number), kind, parameter, factor (on the parameter), speed_rpm, corner. One row for
+        each point, then one for each corner; `corner` is empty for points.
     """
     columns = ["locus", "kind", "parameter", "factor", "speed_rpm", "corner"]
     rows = []

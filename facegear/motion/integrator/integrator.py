@@ -34,7 +34,8 @@ from facegear.motion.plan import Settings, State
 class Integrator:
     """Integrator of a system at one mesh frequency.
 
-    States (2, n) are coordinates and their derivatives by mesh phase, in rad.
+    A state by phase (2, n) holds the coordinates y, then dy/ds by the mesh phase s = frequency * t in
+    rad. The coordinates of a machine are mass-normalised: m kg^0.5, which is written as m here.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class Integrator:
     tolerance : float
         Local error of a step over the length scale.
     order : int, optional
-        Order of the steps; from the tolerance if None.
+        Order of the Taylor polynomials; Settings.taylor_order of the tolerance if None.
     like : Integrator, optional
         Integrator whose scratch space is used if its system has the same sizes. Of two integrators that share
         their scratch space only one may run at a time.
@@ -74,17 +75,19 @@ class Integrator:
 
     @property
     def rows(self) -> int:
-        """Number m of meshes or flanks, and three for each bearing with clearance."""
+        """Number m of rows: meshes or flanks, then three for each bearing with clearance."""
         return len(self.system.mesh_jacobian)
 
     @property
     def contacts(self) -> int:
-        """Number of meshes or flanks."""
+        """Number of contacts: of flanks (two a mesh) where the system has two flanks, else of meshes."""
         return self.system.contacts
 
     @property
     def meshes(self) -> int:
-        """Number of meshes; number of all rows where a mesh is one contact."""
+        """Number of meshes (pairs of flanks); with one contact a mesh all m rows, those of rings
+        included.
+        """
         return self.system.pairs or self.rows
 
     @property
@@ -94,37 +97,37 @@ class Integrator:
 
     @property
     def scale(self) -> float:
-        """Length to which the tolerance is relative, m."""
+        """Length scale of the system, m: the tolerance is a fraction of it."""
         return self.system.scale
 
     @property
     def weights(self) -> Array:
-        """Largest deflection that one unit of each coordinate makes, (n,)."""
+        """Largest deflection of a mesh or friction direction by one unit of each coordinate, (n,)."""
         return weights_of(self.system)
 
     @property
     def damping(self) -> Array:
-        """Damping of each coordinate per rad, (n,)."""
+        """Damping of each coordinate in the equation by phase, (n,), 1/rad: by time over the frequency."""
         return self.system.damping / self.frequency
 
     @property
     def omega_squared(self) -> Array:
-        """Square of the bearing frequency of each coordinate over that of the mesh frequency, (n,)."""
+        """Squared bearing frequency of each coordinate over the squared mesh frequency, (n,)."""
         return self.system.omega_squared / self.frequency**2
 
     @property
     def mesh_jacobian(self) -> Array:
-        """Matrix (m, n) from coordinates to mesh deflections."""
+        """Matrix (m, n) that turns coordinates y into deflections, before the errors are subtracted."""
         return self.system.mesh_jacobian
 
     @property
     def edges(self) -> tuple[Array, Array]:
-        """Lower and upper edge of each row, (m,), m; of a mesh that never opens lower >= upper."""
+        """Lower and upper edge (m,) of each row, m: open between them, never open if lower >= upper."""
         return lower_edges(self.system), self.system.upper
 
     @property
     def fastest(self) -> float:
-        """Frequency of the fastest motion that the system answers with, over the mesh frequency."""
+        """Bound of the angular frequencies in the system's response, over the mesh frequency."""
         return fastest(self.system, self.frequency)
 
     def by_phase(self, state: State) -> Array:
@@ -159,8 +162,8 @@ class Integrator:
 
     @cached_property
     def longest_step(self) -> float:
-        """Longest step, rad, over which disturbances of the motion may be integrated, whatever the
-        motion does.
+        """Longest step, rad of mesh phase, of runs that are `fine` or have tangents; see
+        disturbance_step().
         """
         return disturbance_step(self.fastest, self.order, self.tolerance)
 
@@ -186,15 +189,16 @@ class Integrator:
         tangents : (columns, 2, n) array, optional
             Disturbances that are integrated along, any unit.
         samples : int
-            Number of samples of the coordinates in each period.
+            Number of evenly spaced samples of the coordinates in each period; 0 for none.
         batches : int
-            Number of batches of the sums.
+            Number of batches of whole periods over which integrals are summed up, see Sums; 0 for none.
         growth : bool
             Whether the one tangent is scaled back to length one after every period.
         fine : bool
             Whether steps are as short as tangents need; with tangents they always are.
         drift : (terms, up to m) array, optional
-            Addition to the error in every period, by powers of the phase, m/rad^power.
+            Polynomial that is added to the error e of each row in every period: coefficients by ascending
+            powers of the phase since the start of the period, m/rad^power.
 
         Returns
         -------
@@ -224,7 +228,7 @@ class Integrator:
         Parameters
         ----------
         state : (2, n) array
-            State by phase, m and m/rad.
+            State by phase at the start of a mesh period, m and m/rad.
 
         Returns
         -------
@@ -250,14 +254,14 @@ class Integrator:
         count : int
             Number of first steps to store.
         begin : float
-            Mesh phase at the start in the first period, rad.
+            Mesh phase at the start of the first period, rad: that period is cut to the rest of it.
 
         Returns
         -------
         (2, n) array
             State at the end, m and m/rad.
         int
-            Number of steps.
+            Number of steps of the whole run, also of those that are not stored.
         Steps
             The first `count` of them.
 
@@ -314,7 +318,9 @@ class Integrator:
         return motion.accelerations(self.work, self.machine, phase, np.ascontiguousarray(state))
 
     def _run(self, state: Array, periods: int, **options: Any) -> motion.Log:
-        """Run this machine alone. Raises NotConverged."""
+        """Run this machine alone and return its log, see run_machines() for the options. Raises
+        NotConverged.
+        """
         log = run_machines(self.work, [self], [state], [periods], last_periods=periods, **options)
         require(int(log.status[0]))
         return log
@@ -350,7 +356,7 @@ def run_machines(
     periods : sequence of int
         Number of mesh periods of each machine.
     last_periods : int
-        Number of last periods whose end states are stored.
+        Number of last periods whose end states are stored in the log's `ends`.
     tangents : Array, optional
         Disturbances that are moved along, (columns, 2, n) of one machine or (machines, columns, 2, n), any
         unit.
@@ -406,7 +412,8 @@ def run_machines(
 
 
 def result_of(log: motion.Log, number: int, integrator: Integrator, periods: int) -> RunResult:
-    """Return the result of one machine of a run. Raises NotConverged.
+    """Return the result of one machine from the log of a run of several. Raises NotConverged if its run
+    failed.
 
     Parameters
     ----------

@@ -33,13 +33,16 @@ def pack(system: System, frequency: float, tolerance: float) -> motion.Machine:
     Returns
     -------
     motion.Machine
-        The system at this frequency.
+        The system at this frequency, with the bound fastest() that limits its steps.
     """
     return motion.machine(packed_system(system), frequency, tolerance, fastest(system, frequency))
 
 
 def fastest(system: System, frequency: float) -> float:
-    """Return a bound of the angular frequencies in the response of a system.
+    """Return a bound of the angular frequencies in the response of a system, over the mesh frequency.
+
+    It is the sum of three: the largest natural frequency plus damping with all meshes in contact at their
+    steepest, the largest harmonic of the mesh law that matters, and the bound of the coupling.
 
     Parameters
     ----------
@@ -162,7 +165,7 @@ def make_runner(system: System, order: int, in_lanes: bool = False) -> motion.Ru
     Parameters
     ----------
     system : System
-        A system of the structure.
+        A system of the structure: one with the same sizes and kind of law.
     order : int
         Order of the Taylor steps.
     in_lanes : bool
@@ -178,13 +181,17 @@ def make_runner(system: System, order: int, in_lanes: bool = False) -> motion.Ru
 
 @cache
 def _gauss(count: int) -> tuple[Array, Array]:
-    """Nodes and weights (count,) of Gauss's rule on [0, 1]."""
+    """Return nodes and weights (count,) of Gauss-Legendre quadrature on [0, 1], exact up to degree 2
+    count - 1.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 + 0.5 * nodes, 0.5 * weights
 
 
 def _coupling(coupling: Coupling | None, n: int) -> Array:
-    """Return the four coupling matrices as one array, empty without coupling."""
+    """Return the matrices of dampers, gyroscopic, circulatory and centrifugal terms as (4, n, n), or (0,
+    n, n) without coupling.
+    """
     if coupling is None:
         return np.zeros((0, n, n))
     return np.array([coupling.dampers, coupling.gyroscopic, coupling.circulatory, coupling.centrifugal])
@@ -192,10 +199,12 @@ def _coupling(coupling: Coupling | None, n: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _fastest(system: System) -> tuple[float, float]:
-    """Return the largest natural frequency, 1/s, and the number of the law's harmonics that matter.
+    """Return the largest natural angular frequency, 1/s, and the largest harmonic of the mesh law that
+    matters.
 
-    The frequency is that with all meshes in contact, plus damping. The harmonics count in multiples of the
-    mesh frequency.
+    The frequency is that with all meshes in contact at their steepest, plus the largest damping. Harmonic
+    j of the law counts as j times the eighth root of its fraction of the stiffness, so that weak ones
+    count less.
     """
     contacts = system.contacts
     mesh = np.zeros(len(system.mesh_jacobian))

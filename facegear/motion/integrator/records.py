@@ -27,7 +27,7 @@ class Steps(NamedTuple):
 
 
 class Extrema(NamedTuple):
-    """Deflections where they change direction.
+    """Deflections of m rows where they change direction in a run, m.
 
     `values` (m, 2, K) are maxima, then minima, in the order in which they are met. `counts` (m, 2) include
     those that have not been stored.
@@ -70,7 +70,7 @@ def extrema_of(log: motion.Log) -> Extrema:
 
 
 class Sums(NamedTuple):
-    """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
+    """Integrals over the mesh phase (rad), in B batches of whole periods; B = 0 if none were requested.
 
     Of meshes with two flanks the first `pairs` columns hold half the difference of the deflections of the two
     from their edges, and the difference of their forces.
@@ -78,19 +78,20 @@ class Sums(NamedTuple):
     Attributes
     ----------
     origin : (n,)
-        About which coordinates are taken.
+        Reference from which the coordinates are counted.
     level : (m,)
-        About which deflections are taken.
+        Reference from which the deflections are counted, m.
     coordinates : (B, n)
-        Of y.
+        Integral of y - origin over each batch.
     products : (B, n, n)
-        Of y y^T, of which the upper half is filled.
+        Integral of (y - origin) (y - origin)^T over each batch; only the upper triangle is filled.
     deflections, squared : (B, m)
-        Of the deflections and their squares.
+        Integrals of the deflections less `level`, and of their squares, m rad and m^2 rad.
     forces : (2, m)
-        Elastic mesh force over w^2 and its magnitude.
+        Integrals over the whole run of the elastic mesh force, and of its magnitude, over the squared
+        mesh frequency.
     minimum, maximum : (m,)
-        Extremes of the deflections.
+        Extremes of the deflections over the run, m.
     pull : (m,)
         The smallest force of spring and damper of a contact over w^2, negative where flanks are pulled
         together, zero where they never are, at the ends and inner nodes of the steps.
@@ -154,9 +155,11 @@ class RunResult:
     samples : (periods * samples, n) array
         Coordinates at evenly spaced phases, from the start of each period.
     fractions : (3, m) array
-        Fraction of the time open, on the drive and on the back flank; only with samples, batches or tangents.
+        Fractions of the time that each row is open, on its drive flank, on its back flank; zeros without
+        samples, batches or tangents.
     divergence : float
-        Integral of the trace of the equations' matrix; only with tangents.
+        Integral over the phase of the trace of the linearised equations' matrix: the logarithm of the
+        determinant of the monodromy matrix. Only with tangents.
     growth : (periods,) array
         Logarithm of the growth of the one tangent in each period, if it was requested.
     steps : int
@@ -177,7 +180,10 @@ class RunResult:
 
 
 def disturbance_step(fastest: float, order: int, tolerance: float) -> float:
-    """Return the step at which the last Taylor term of the fastest disturbance is 100 times the tolerance.
+    """Return the step h at which the last Taylor term of the fastest disturbance is 100 times the
+    tolerance.
+
+    With the order p this is (fastest h)^p / p! = 100 tolerance, which is taken as 0.01 at most.
 
     The fastest are the most damped; one of half its frequency is then below the tolerance at any order used.
 

@@ -20,7 +20,10 @@ from facegear.machine.linear_model import LinearModel
 
 @dataclass(frozen=True, eq=False)
 class Coupling:
-    """Forces (D + W G) y' + (W N + W^2 P) y at an angular speed W (rad/s).
+    """Forces (D + W G) y' + (W N + W^2 P) y, on the left side of the equations of motion, at an angular
+    speed W.
+
+    W is the speed of the pinions or the mesh frequency, rad/s, see per_speed().
 
     The matrices are dampers D, gyroscopic G, circulatory N, and centrifugal P, each (n, n).
     """
@@ -32,11 +35,13 @@ class Coupling:
 
     @property
     def any(self) -> bool:
-        """Whether some matrix has an entry."""
+        """Whether at least one of the four matrices has an entry that is not zero."""
         return any(matrix.any() for matrix in self._matrices)
 
     def directions(self, basis: Array) -> Array:
-        """Directions along which the motions of a basis push, each matrix scaled to size one.
+        """Return the directions of the forces that unit coordinates of a basis make through each matrix.
+
+        Each matrix is divided by its Frobenius norm; matrices of zeros are left out.
 
         Parameters
         ----------
@@ -53,7 +58,8 @@ class Coupling:
         return np.concatenate([row / size for row, size in zip(rows, sizes, strict=True) if size > 0.0])
 
     def among(self, basis: Array) -> "Coupling":
-        """Coupling in the coordinates of a basis.
+        """Transform the coupling to the coordinates of a basis B: B^T matrix B for each of the four
+        matrices.
 
         Parameters
         ----------
@@ -84,7 +90,8 @@ class Coupling:
         return np.asarray(np.any([size > part * size.max(initial=0.0) for size in sizes], axis=0))
 
     def split(self) -> tuple[Array, "Coupling | None"]:
-        """Split off the diagonal of the dampers.
+        """Split off the diagonal of the dampers, which the integrator counts as damping of the single
+        coordinates.
 
         Returns
         -------
@@ -98,12 +105,15 @@ class Coupling:
         return diagonal, left if left.any else None
 
     def per_speed(self, ratio: float) -> "Coupling":
-        """Express the coupling by another angular speed.
+        """Express the coupling by another angular speed, without changing its forces.
+
+        G and N are divided by `ratio`, P by its square; D stays.
 
         Parameters
         ----------
         ratio : float
-            The ratio of the other speed to the one before.
+            The new speed over the speed before, such as the mesh frequency over that of the pinions:
+            their teeth.
 
         Returns
         -------
@@ -114,7 +124,8 @@ class Coupling:
         return Coupling(self.dampers, gyroscopic, circulatory, self.centrifugal / ratio**2)
 
     def velocity_terms(self, speed: float) -> Array:
-        """Matrix D / W + G that acts on derivatives by the phase W t.
+        """Return the matrix D / W + G that acts on derivatives by the phase W t, in the equations by
+        phase.
 
         Parameters
         ----------
@@ -129,7 +140,7 @@ class Coupling:
         return self.dampers / speed + self.gyroscopic
 
     def displacement_terms(self, speed: float) -> Array:
-        """Matrix N / W + P that acts on displacements over the phase W t.
+        """Return the matrix N / W + P that acts on displacements, in the equations by the phase W t.
 
         Parameters
         ----------
@@ -144,7 +155,10 @@ class Coupling:
         return self.circulatory / speed + self.centrifugal
 
     def fastest(self, speed: float) -> float:
-        """Bound of the angular frequency that the coupling brings by itself.
+        """Return a bound of the angular frequency that the coupling brings by itself, from spectral
+        norms.
+
+        It is |D| / W + |G| + sqrt(|N| / W + |P|).
 
         Parameters
         ----------
@@ -179,12 +193,14 @@ RIGID = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """The moving part in n mass-normalised coordinates y, displacements = basis y.
+    """The moving part of a machine in n mass-normalised coordinates y: displacements (dof,) = basis y.
+
+    With the mass matrix M it is basis^T M basis = I, hence y = basis^T M displacements, in m kg^0.5.
 
     Attributes
     ----------
     basis : (dof, n) array
-        Displacements of unit coordinates.
+        Displacements of unit coordinates, in columns: 1/kg^0.5, for rotations 1/(kg^0.5 m).
     mesh_jacobian : (contacts, n) array
         Mesh deflections of unit coordinates, followed by x, y and a row of zeros of each bearing with
         clearance. These bearings are not in omega_squared.
@@ -193,7 +209,7 @@ class Reduction:
     damping : (n,) array
         Damping, 1/s.
     load : (n,) array
-        Load from torques and forces.
+        Constant generalised load from torques and forces.
     free : tuple of str
         Names of the coordinates that nothing touches.
     coupling : Coupling or None
@@ -256,7 +272,7 @@ def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduction:
 
 
 def together(mesh_jacobian: Array, coupling: Coupling) -> Integers:
-    """Order coupled coordinates for the kernels.
+    """Order coupled coordinates so that the compiled kernels use their vectors of LANES coordinates well.
 
     Coordinates that the same meshes feel are side by side, the most first. Among them, those that are coupled
     are side by side, first those that fill whole vectors of the kernels.
@@ -281,7 +297,7 @@ def together(mesh_jacobian: Array, coupling: Coupling) -> Integers:
 
 
 def modal_damping(linear: LinearModel, omega_squared: Array) -> Array:
-    """Damping lambda + beta omega^2 of each coordinate, equation (21).
+    """Compute the damping lambda + beta omega^2 of each coordinate, the factor of y' by equation (21).
 
     Parameters
     ----------
@@ -299,7 +315,11 @@ def modal_damping(linear: LinearModel, omega_squared: Array) -> Array:
 
 
 def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Array, Array]:
-    """Basis of all motions that meshes couple, with unit modal mass.
+    """Compute a basis of all motions that meshes couple, with unit modal mass, for diagonal mass and
+    bearings.
+
+    Coordinates of equal bearing frequency form groups. In each group the right singular vectors of the
+    mass-scaled Jacobian with singular values above RANK span the motions that meshes feel.
 
     Parameters
     ----------
@@ -338,8 +358,10 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
 def _basis(
     linear: LinearModel, stiffness: Array, directions: Array, coupling: Coupling | None
 ) -> tuple[Array, Array]:
-    """Return basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
-    them.
+    """Return the basis (dof, n) and omega^2 (n,), 1/s^2, of all motions that directions (rows, dof)
+    excite.
+
+    Directions that the coupling hands on from the basis are added until the basis contains them all.
     """
     axes, mass, principal = _principal_axes(linear, stiffness)
     while True:
@@ -358,10 +380,12 @@ def _basis(
 
 
 def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None, Array, Array]:
-    """Return axes (dof, dof), in columns, along which masses and bearings are decoupled; None for the
-    coordinates.
+    """Return axes (dof, dof), in columns, along which masses and bearings are decoupled, and both along
+    them, (dof,).
 
-    Also return masses and stiffnesses (dof,) along them.
+    The axes are None where mass and stiffness matrices are diagonal already. Coordinates that are coupled
+    have generalised eigenvectors of unit mass; stiffness that is only rounding, of rigid motions, is set
+    to 0.
     """
     is_coupled = (linear.mass != 0.0) | (stiffness != 0.0)
     count, group = connected_components(is_coupled, directed=False)
@@ -381,7 +405,9 @@ def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None
 
 
 def _coupling(linear: LinearModel) -> Coupling | None:
-    """Coupling of all coordinates, for a speed of the pinions of 1 rad/s."""
+    """Return the coupling among all coordinates (dof), for a speed of the pinions of 1 rad/s; None if
+    there is none.
+    """
     spin, zeros = linear.spin, np.zeros_like(linear.dampers)
     turning = (zeros, zeros, zeros) if spin is None else (spin.gyroscopic, spin.circulatory, spin.centrifugal)
     coupling = Coupling(linear.dampers, *turning)
@@ -389,7 +415,9 @@ def _coupling(linear: LinearModel) -> Coupling | None:
 
 
 def _ring_rows(linear: LinearModel) -> list[Array]:
-    """Return the rows that give the displacement of each bearing with clearance."""
+    """Return a matrix (3, dof) for each bearing with clearance: rows that pick x and y of its body, and a
+    row of zeros.
+    """
     rows = np.zeros((len(linear.ring_coordinates), 3, linear.size))
     for row, coordinates in zip(rows, linear.ring_coordinates, strict=True):
         row[[0, 1], coordinates] = 1.0

@@ -37,29 +37,32 @@ class System:
     Attributes
     ----------
     mesh_jacobian : (m, n)
-        Derivative of the mesh deflections.
+        Matrix G: deflections d = G y - e; d above `upper` presses a contact in, d below `lower` on its
+        back side.
     omega_squared, damping : (n,)
-        1/s2 and 1/s.
+        Stiffness (squared bearing frequency, 1/s2) and damping (1/s) of each coordinate, for unit mass.
     mesh_damping, lower, upper : (m,)
-        A mesh with lower >= upper never opens.
+        Damping c, N s/m, and deflections at which contact begins below and above, m. A mesh with lower >=
+        upper never opens.
     law
-        Of the meshes, without those of rings.
+        Force law of the contacts, without the rings: force in N from phase in mesh periods and
+        compression in m.
     error
-        Series of the kinds of mesh that differ in phase.
+        Fourier series (kinds, 2, harmonics + 1) of the different errors e(s) among the rows, m.
     error_kind : (m,)
-        Which of them a mesh has.
+        Index in `error` of the series of each row.
     load : (n, 2, harmonics + 1)
-        On the coordinates.
+        Fourier series of the generalised load on each coordinate.
     damping_when_open
         Whether mesh dampers act on open meshes too.
     scale
-        The length that tolerances mean.
+        Length, m, of which tolerances, residuals and distances of states are fractions: the length scale.
     two_flanks
         The m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     push_only
         Spring and damper of a contact together never pull, F >= 0, damping acts in contact only.
     ring_stiffness, ring_clearance : (R,)
-        Of the rings.
+        Stiffness beyond the clearance, N/m, and radial clearance, m, of the R bearings with clearance.
     ring_lag
         Damping over stiffness of the rings, s.
     rubbing
@@ -96,12 +99,14 @@ class System:
 
     @property
     def contacts(self) -> int:
-        """Number of the m rows that are meshes or flanks, and not of rings."""
+        """Number of the m rows that are contacts: meshes or flanks, without the three rows of each
+        bearing with clearance.
+        """
         return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
 
     @property
     def pairs(self) -> int:
-        """Number of meshes with two flanks."""
+        """Number of meshes if each has two flanks, a pair of contacts; 0 if a mesh is one contact."""
         return self.contacts // 2 if self.two_flanks else 0
 
 
@@ -109,7 +114,9 @@ class System:
 class FlankRubbing:
     """Forces of friction: each of K adds `ratio` times the law's force of a flank along a direction.
 
-    flank (K,) numbers of the flanks, ratios (K, 2, harmonics + 1) Fourier series, directions (K, n).
+    `flank` (K,) is the index of the flank whose force counts. `ratios` (K, 2, harmonics + 1) are Fourier
+    series in the mesh phase, sine part first. `directions` (K, n) are generalised forces on y for a unit
+    friction force.
     """
 
     flank: Integers
@@ -163,8 +170,8 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
 
 @kept_by_content(8)
 def _kinds(series: tuple[Harmonics, ...]) -> tuple[Array, Integers]:
-    """Return the different series of e(t) among contacts and bearing rings, and the number of each one's
-    series.
+    """Return the different series of e(t) among contacts and rings, stacked, and the index of the series
+    of each, (m,).
 
     The result is shared and must not be changed.
     """
@@ -172,7 +179,9 @@ def _kinds(series: tuple[Harmonics, ...]) -> tuple[Array, Integers]:
 
 
 def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> FlankRubbing:
-    """Friction of all flanks in reduced coordinates, without directions in which nothing moves."""
+    """Return the friction of all flanks, drive flanks first, in reduced coordinates, without directions
+    of zeros.
+    """
     rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
     ratios = flank_ratios(friction.ratios, machine.phases)
@@ -180,7 +189,10 @@ def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> 
 
 
 def length_scale(machine: Machine) -> float:
-    """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude.
+    """Return the largest of three lengths, to which tolerances and residuals refer.
+
+    They are the mean mesh deflection under the largest pinion torque, the largest half backlash, and the
+    sum of the amplitudes of the error's harmonics.
 
     Parameters
     ----------

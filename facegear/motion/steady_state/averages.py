@@ -27,7 +27,7 @@ SLOW_WAVES = 4
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Moments of each column.
+    """Moments of each column, such as a mesh, all (columns,) in the unit of the samples.
 
     The half-widths come from the spread between batches of periods; they are zero for a periodic motion.
 
@@ -38,7 +38,7 @@ class Moments:
     minimum, maximum
         Extremes.
     rms_interval, ac_rms_interval
-        95 % half-widths.
+        Half-widths of the 95 % confidence intervals of rms and ac_rms.
     """
 
     mean: Array
@@ -57,24 +57,24 @@ class Averages:
     Attributes
     ----------
     weight : (B,)
-        Of a batch, its periods.
+        Number of mesh periods in each batch.
     level : (M,)
-        About which squares are taken, m.
+        Reference from which deflections are counted, m.
     deflection, square : (B, M)
-        Mean, m, and mean square about the level.
+        Mean of deflection - level, m, and of its square, m^2.
     minimum, maximum : (M,)
-        m.
+        Extremes of the deflections over the whole window, m.
     force : (2, M)
-        Mean and mean magnitude of the elastic mesh force.
+        Mean and mean magnitude of the elastic mesh force over the whole window.
     pull : (M,)
         Largest force by which the damper of a contact pulls its flanks together. Forces are in N in a
         response, over the squared mesh frequency as the kernels count them.
     origin : (n,)
-        About which the coordinates are taken.
+        Reference from which the coordinates are counted.
     centre : (B, n)
-        Mean of y.
+        Mean of y - origin in each batch.
     products : (B, n, n)
-        Mean of y y^T.
+        Mean of (y - origin) (y - origin)^T in each batch.
     """
 
     weight: Array
@@ -91,12 +91,15 @@ class Averages:
 
     @property
     def centred_squares(self) -> Array:
-        """Mean square (B, M) of the deflections of each batch about the mean of all, m^2."""
+        """Mean square (B, meshes) of the deflections in each batch, m^2, about their mean over the whole
+        window.
+        """
         off = self._whole(self.deflection)
         return self.square - 2.0 * off * self.deflection + off**2
 
     def meshes(self, periodic: bool) -> Moments:
-        """Moments of the mesh deflections.
+        """Compute the moments of the mesh deflections over the whole window, with intervals from its
+        batches.
 
         Parameters
         ----------
@@ -148,7 +151,7 @@ class Averages:
         return np.sqrt(variance + mean**2), ac_rms, _root_interval(variances, ac_rms, periodic)
 
     def part(self, batches: slice) -> "Averages":
-        """Averages over some of the batches; extremes and forces stay those of all.
+        """Return the averages over some of the batches; extremes and forces stay those of all.
 
         Parameters
         ----------
@@ -164,12 +167,13 @@ class Averages:
         return replace(self, **{name: getattr(self, name)[batches] for name in names})
 
     def _whole(self, batches: Array) -> Array:
-        """Return the weighted mean of batches."""
+        """Return the mean of batches (B, ...) weighted with their numbers of periods."""
         return np.tensordot(self.weight / self.weight.sum(), batches, 1)
 
 
 def averages(integrator: Integrator, sums: Sums, periods: int) -> Averages:
-    """Compute the averages from the integrals over a run.
+    """Compute the averages from the integrals over a run; forces are still over the squared mesh
+    frequency.
 
     Parameters
     ----------
@@ -238,7 +242,8 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
 
 
 def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width of a mean from the correlation of successive batches alone.
+    """Compute the half-width of the confidence interval of a mean from the correlation of successive
+    batches alone.
 
     It serves for a few batches, such as the halves of a run: how many independent ones they are worth is not
     known, and an interval that allows for any number would hide every change.
@@ -260,7 +265,8 @@ def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array
 
 
 def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width of a mean from independent batches, by Student's distribution.
+    """Compute the half-width of the confidence interval of a mean of independent batches, by Student's
+    distribution.
 
     Parameters
     ----------
@@ -281,14 +287,21 @@ def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Arra
 
 
 def _successive(batches: Array) -> Array:
-    """Return the correlation (columns,) of each batch with the next batch; 0 without spread."""
+    """Return the correlation (columns,) of each batch with the next one, from batches (B, columns); 0
+    without spread.
+    """
     off = batches - batches.mean(axis=0)
     square = (off * off).sum(axis=0)
     return np.asarray((off[1:] * off[:-1]).sum(axis=0) / np.where(square > 0.0, square, 1.0))
 
 
 def _autoregressive_interval(batches: Array, confidence: float) -> Array:
-    """Half-width (columns,) by the number of independent batches that correlated ones are worth."""
+    """Return the half-width (columns,) of the mean of batches (B, columns) as a series of first-order
+    autoregression.
+
+    Student's quantile and the variance are taken for the number of independent batches that they are
+    worth.
+    """
     count, sample = len(batches), _successive(batches)
     # In a sample the correlation is too low by (1 + 4 r) / B, and the variance by its 1 / `worth`.
     correlation = np.clip(sample + (1.0 + 4.0 * sample) / count, 0.0, LARGEST_CORRELATION)
@@ -300,7 +313,9 @@ def _autoregressive_interval(batches: Array, confidence: float) -> Array:
 
 
 def _slow_wave_interval(batches: Array, confidence: float) -> Array:
-    """Half-width (columns,) from the amplitudes of the slowest waves over the run."""
+    """Return the half-width (columns,) of the mean of batches (B, columns) from their SLOW_WAVES slowest
+    cosines.
+    """
     count = len(batches)
     waves = min(SLOW_WAVES, count - 1)
     phases = np.pi * np.arange(1, waves + 1)[:, None] * (np.arange(count) + 0.5) / count
@@ -310,7 +325,12 @@ def _slow_wave_interval(batches: Array, confidence: float) -> Array:
 
 
 def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:
-    """95 % half-width (columns,) of a root mean square from batch means of what differs from its square."""
+    """Return the 95 % half-width (columns,) of a root mean square `root` from batch means (B, columns) of
+    its square.
+
+    The half-width of the square is divided by 2 `root`. The batch means may lack a constant. It is 0 for
+    a periodic motion.
+    """
     if periodic:
         return np.zeros(root.size)
     return mean_interval(squared) / (2.0 * np.where(root > 0.0, root, 1.0))
@@ -318,5 +338,5 @@ def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:
 
 @cache
 def _student(freedom: int, confidence: float) -> float:
-    """Return the two-sided quantile of Student's distribution."""
+    """Return the two-sided quantile of Student's distribution with `freedom` degrees of freedom."""
     return float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence))

@@ -29,7 +29,8 @@ MAX_MULTIPLIER = 0.99
 
 @dataclass(frozen=True, eq=False)
 class Guide:
-    """A stable orbit of one mesh period, and the integrator of its system.
+    """A stable orbit of one mesh period, and the integrator of its system, to lead runs of similar
+    systems.
 
     Systems that the guide leads may use the integrator's scratch space.
     """
@@ -38,7 +39,8 @@ class Guide:
     orbit: Orbit
 
     def serves(self, system: System) -> bool:
-        """Whether the coordinates of another system are the same.
+        """Whether another system has the same mesh Jacobian and bearing frequencies, so that states can
+        be compared.
 
         Parameters
         ----------
@@ -57,12 +59,16 @@ class Guide:
 
     @cached_property
     def inverse(self) -> ComplexArray:
-        """Matrix (2 n, 2 n) that gives the components of states off the orbit along its eigenvectors."""
+        """Inverse (2 n, 2 n) of the eigenvectors: it turns states off the orbit (2 n,) into components
+        along them.
+        """
         return np.asarray(np.linalg.inv(self.orbit.vectors))
 
     @cached_property
     def chord(self) -> Array:
-        """Inverse matrix (2 n, 2 n) of Newton's step, kept from the guide's orbit (chord method)."""
+        """Matrix (2 n, 2 n) of Newton's step, (I - M)^-1 with the monodromy matrix M of the guide's orbit
+        (chord method).
+        """
         return np.asarray(((self.orbit.vectors / (1.0 - self.orbit.multipliers)) @ self.inverse).real)
 
     def step(self, change: Array) -> Array:
@@ -94,7 +100,8 @@ def guide_of(integrator: Integrator, orbit: Orbit | None) -> Guide | None:
     Returns
     -------
     Guide or None
-        None where the orbit has more than one mesh period or attracts too weakly.
+        None where there is no orbit, it has more than one mesh period, or its largest multiplier is
+        MAX_MULTIPLIER or more.
     """
     fit = orbit is not None and orbit.period == 1 and abs(orbit.multipliers[0]) < MAX_MULTIPLIER
     return Guide(integrator, orbit) if orbit is not None and fit else None
@@ -118,7 +125,8 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
     Returns
     -------
     SettlingResult or None
-        None if the run does not settle near the guide, or this is uncertain.
+        Where the run settles, without an Orbit and its multipliers. None if the run does not settle near
+        the guide, or this is uncertain.
     """
     try:
         return _follow_guide(integrator, state, guide)
@@ -127,7 +135,10 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
 
 
 def _follow_guide(integrator: Integrator, state: Array, guide: Guide) -> SettlingResult | None:
-    """Run a few periods and solve for an orbit near the guide's; None if there is none."""
+    """Run from a state (2, n) in blocks of periods, and solve for an orbit near the guide's after each.
+
+    Return it once it is seen to attract the run, else None. Raises NotConverged.
+    """
     ends = state[None]
     for block in BLOCKS:
         run = integrator.run(ends[-1], block)
@@ -142,10 +153,12 @@ def _follow_guide(integrator: Integrator, state: Array, guide: Guide) -> Settlin
 
 
 def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Array, float] | None:
-    """Find the orbit (2, n) to which the chord method comes, and the change over its period.
+    """Return the orbit (2, n) to which the chord method comes, and the change over its period; None where
+    it fails.
 
-    It starts from the last two states (2, 2, n) of a run, a period apart. The last step is not run: it gains
-    at least what the least of those before it has gained.
+    It starts from the last two states (2, 2, n) of a run, a period apart. The change is over the length
+    scale. It is an estimate where the last step is not run: a step gains at least what the least of those
+    before it has gained.
     """
     state, end = states
     best, ratio = change(integrator, state, end), 0.0
@@ -164,7 +177,7 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
 
 
 def drawn_in(off: Array, guide: Guide) -> bool:
-    """Whether a run comes nearer to the orbit as the guide's multipliers predict.
+    """Whether a run comes nearer to the orbit in each period as the guide's multipliers predict.
 
     Parameters
     ----------

@@ -37,6 +37,8 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
 def each_deflection(system: System, coordinates: Array, per_period: int) -> Array:
     """Compute the deflections G y - e of each contact: each mesh, or each flank where meshes have two.
 
+    G is the mesh Jacobian, y are the coordinates, and e is the transmission error.
+
     Parameters
     ----------
     system : System
@@ -60,7 +62,10 @@ def each_deflection(system: System, coordinates: Array, per_period: int) -> Arra
 
 
 def errors_of_period(system: System, per_period: int) -> Array:
-    """Transmission errors of the contacts over a mesh period; the array is shared and must not be changed.
+    """Return the transmission errors of the contacts at even samples of a mesh period, which starts at
+    phase 0.
+
+    The array is shared and must not be changed.
 
     Parameters
     ----------
@@ -79,8 +84,9 @@ def errors_of_period(system: System, per_period: int) -> Array:
 
 @kept_by_content(2)
 def _errors(series: Array, kind: Integers, per_period: int) -> Array:
-    """Return the errors (per_period, contacts), m, of contacts of given kinds at the samples of a mesh
-    period.
+    """Return the errors (per_period, contacts), m, at evenly spaced samples of a mesh period.
+
+    `series` (kinds, 2, harmonics + 1) and `kind` (contacts,) are as System.error and error_kind.
     """
     return np.asarray(stacked_values(series, np.arange(per_period) / per_period)[:, kind])
 
@@ -88,7 +94,8 @@ def _errors(series: Array, kind: Integers, per_period: int) -> Array:
 def by_mesh(system: System, contact_deflections: Array) -> Array:
     """Compute the deflection of each mesh from those of its contacts.
 
-    With two flanks it is half the difference of their heights above their edges.
+    With two flanks it is half the difference of the heights of drive and back flank above their edges, so
+    that it counts from the middle of the backlash and is positive towards the drive flank.
 
     Parameters
     ----------
@@ -109,7 +116,8 @@ def by_mesh(system: System, contact_deflections: Array) -> Array:
 
 
 def mesh_forces(system: System, contact_deflections: Array, per_period: int) -> Array:
-    """Compute the elastic force of each mesh; with two flanks the difference of both.
+    """Compute the elastic force of each mesh, positive on the drive flank; with two flanks drive less
+    back flank.
 
     Parameters
     ----------
@@ -144,7 +152,7 @@ def _transmitted(system: System, contact_deflections: Array, cycles: Array) -> A
 
 
 def largest_mesh_forces(system: System, contact_deflections: Array, per_period: int, wraps: bool) -> Array:
-    """Largest magnitude of each elastic mesh force, located between the samples.
+    """Compute the largest magnitude of each elastic mesh force, located between the samples.
 
     Between samples the deflections are polynomials. The mesh law turns these into forces, so that a short
     contact has its kink where the flank touches.
@@ -181,7 +189,8 @@ def largest_mesh_forces(system: System, contact_deflections: Array, per_period: 
 
 
 def past_law(system: System, contact_deflections: Array) -> Array:
-    """Fraction of the samples at which a mesh is compressed beyond the last level of its law.
+    """Compute the fraction of the samples at which a mesh is compressed beyond the last level of its
+    law's table.
 
     With two flanks it is the larger fraction of both.
 
@@ -205,7 +214,7 @@ def past_law(system: System, contact_deflections: Array) -> Array:
 
 
 def mesh_fractions(system: System, fractions: Array, contact_deflections: Array) -> Array:
-    """Fraction of the time that each mesh is open, on its drive flank and on its back flank.
+    """Compute the fractions of the time that each mesh is open, on its drive flank and on its back flank.
 
     Time with both flanks wedged counts on both, so that the three may add up to more than one. A flank that
     is never compressed by more than rounding is open.
@@ -236,9 +245,10 @@ def mesh_fractions(system: System, fractions: Array, contact_deflections: Array)
 
 
 def _never_pressed(deepest: Array, fractions: Array, samples: int) -> Mask:
-    """Find contacts that touch for longer than a sample but are never compressed by more than rounding.
+    """Return which contacts touch for longer than a sample but are never compressed by more than
+    rounding, (m,).
 
-    `deepest` (m,) is the largest height of the samples beyond the edge; `fractions` (m,) is the time in
-    contact.
+    `deepest` (m,) is the largest compression among the samples, m, negative where there is none.
+    `fractions` (m,) of the time are those in contact, `samples` their number.
     """
     return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (fractions * samples > 1.0)

@@ -27,7 +27,7 @@ EQUAL = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A periodic motion.
+    """Samples of a periodic motion over its period, to compare it with its images under symmetries.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Cycle:
     per_period : int
         Number of samples in each mesh period.
     orbit : Orbit or None
-        Its orbit, whose neutral directions are not compared.
+        Its orbit, if known: differences along its neutral directions do not count.
     """
 
     system: System
@@ -47,7 +47,7 @@ class Cycle:
     orbit: Orbit | None
 
     def image(self, symmetry: Symmetry) -> Array:
-        """Samples of the image of the motion.
+        """Return the samples of the image of the motion under a symmetry, at the same instants.
 
         Parameters
         ----------
@@ -62,14 +62,15 @@ class Cycle:
         return self._advanced(symmetry.shift) @ symmetry.matrix.T
 
     def image_state(self, symmetry: Symmetry, state: Array) -> Array:
-        """Image of the state with which the samples begin.
+        """Return the image's state at the instant at which the samples begin.
 
         Parameters
         ----------
         symmetry : Symmetry
             Symmetry of the system.
         state : (2, n) array
-            State by phase, m and m/rad.
+            The motion's own state by phase at that instant, used if the symmetry has no shift; m and
+            m/rad.
 
         Returns
         -------
@@ -115,7 +116,9 @@ class Cycle:
 
     @property
     def _neutral(self) -> Array:
-        """Orthonormal directions (n, k) in which bodies are free."""
+        """Orthonormal directions (n, k) of the coordinates along which the orbit is neutral, as bodies
+        are free there.
+        """
         size = self.system.size
         if self.orbit is None or self.orbit.is_off_circle.all():
             return np.zeros((size, 0))
@@ -124,7 +127,8 @@ class Cycle:
         return np.asarray(axes[:, : np.count_nonzero(sizes > SAME_MOTION)])
 
     def _advanced(self, shift: float, slope: bool = False) -> Array:
-        """Samples, or their derivatives by phase, a shift (in mesh periods) later.
+        """Return the samples (K, n), or their derivatives by phase (1/rad), a shift (in mesh periods)
+        later.
 
         They are exact for waves that the samples resolve.
         """
@@ -170,7 +174,7 @@ def held_symmetries(response: SteadyState) -> tuple[Symmetry, ...]:
 
 
 def symmetries_of_start(system: System, start: State) -> tuple[Symmetry, ...]:
-    """Return the symmetries that leave a start unchanged: those without a shift, and at rest all.
+    """Return the symmetries that map a start to itself; those with a shift in time only if it is at rest.
 
     Parameters
     ----------
@@ -273,7 +277,7 @@ def start_on_image(response: SteadyState, start_symmetries: Sequence[Symmetry]) 
     response : SteadyState
         Response.
     start_symmetries : sequence of Symmetry
-        Symmetries of the start.
+        Symmetries of the start; only images under these are considered.
 
     Returns
     -------
@@ -291,7 +295,12 @@ def start_on_image(response: SteadyState, start_symmetries: Sequence[Symmetry]) 
 
 
 def _preferred(cycle: Cycle, moments: Moments, start_symmetries: Sequence[Symmetry]) -> Symmetry | None:
-    """Return the symmetry that leads to the preferred image; None where that is the motion itself."""
+    """Return the symmetry, of those of the start, that leads to the preferred image; None where that is
+    the motion itself.
+
+    The preferred one has the largest AC RMS in the first mesh in which images differ, else the largest
+    mean.
+    """
     if all(map(cycle.holds, start_symmetries)):
         return None
     best, best_numbers = None, np.concatenate([moments.ac_rms, moments.mean])
@@ -304,18 +313,20 @@ def _preferred(cycle: Cycle, moments: Moments, start_symmetries: Sequence[Symmet
 
 
 def _comes_first(numbers: Array, reference: Array) -> bool:
-    """Whether the first number that differs from the reference's is larger."""
+    """Whether the first of the numbers (k,) that differs from the reference's is larger than it."""
     apart = np.flatnonzero(np.abs(numbers - reference) > EQUAL * np.abs(reference).max(initial=0.0))
     return bool(apart.size and numbers[apart[0]] > reference[apart[0]])
 
 
 def _cycle_of(response: SteadyState) -> Cycle:
-    """Return the cycle of a steady state."""
+    """Return the samples of a periodic response as a cycle."""
     return Cycle(response.system, response.coordinates, response.per_period, response.orbit)
 
 
 def _cycle_of_first_watch(first_watch: FirstWatch, system: System) -> Cycle | None:
-    """Return the cycle of a motion after its first watch, None if it has not settled."""
+    """Return the cycle of a motion after its first watch; None if it has not settled or no window was
+    run.
+    """
     if first_watch.watch_result is None:
         return None
     window = first_watch.watch_result.window

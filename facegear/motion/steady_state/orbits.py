@@ -36,7 +36,8 @@ class Orbit:
         Change over the period over the length scale, also an error estimate once Newton's method has
         converged.
     multipliers : (2 n,) array
-        Complex Floquet multipliers, largest first.
+        Complex Floquet multipliers, largest modulus first: eigenvalues of the monodromy matrix in states
+        by phase.
     vectors : (2 n, 2 n) array
         Their eigenvectors, by column.
     liouville : float
@@ -53,7 +54,9 @@ class Orbit:
 
     @property
     def is_off_circle(self) -> Mask:
-        """Mask (2 n,) of the multipliers off the unit circle: all but those of neutral directions."""
+        """Mask (2 n,) of the multipliers off the unit circle by more than UNIT_TOLERANCE; the others
+        count as neutral.
+        """
         return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property
@@ -62,7 +65,8 @@ class Orbit:
         return float(np.abs(self.multipliers[self.is_off_circle]).max(initial=0.0))
 
     def parts(self, off: Array) -> ComplexArray:
-        """Components of states off the orbit along its own eigenvectors.
+        """Return the components of states off the orbit along its eigenvectors, in the order of the
+        multipliers.
 
         Parameters
         ----------
@@ -78,12 +82,15 @@ class Orbit:
 
     @cached_property
     def _inverse(self) -> ComplexArray:
-        """Pseudoinverse (2 n, 2 n) of the eigenvectors, some of which may be parallel to rounding."""
+        """Pseudoinverse (2 n, 2 n) of the matrix of eigenvectors, some of which may be parallel to
+        rounding.
+        """
         return np.asarray(np.linalg.pinv(self.vectors, rcond=len(self.vectors) * np.finfo(float).eps))
 
     def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
-        """Distance of a state from the orbit, measured as by change(), without shifts along neutral
-        directions.
+        """Return the distance of a state from the orbit's `state`, as change() measures it.
+
+        Shifts along neutral directions are left out. Other states of the orbit are not considered.
 
         Parameters
         ----------
@@ -108,7 +115,8 @@ class Orbit:
         return change(integrator, off, 0.0 * off)
 
     def leading_disturbance(self, integrator: Integrator, off: Array) -> Array:
-        """Disturbance of size one, as by change(), along the leading eigenvector.
+        """Return a disturbance of size one, as change() measures it, along the eigenvector of the largest
+        multiplier.
 
         Parameters
         ----------
@@ -130,7 +138,10 @@ class Orbit:
 
 
 def change(integrator: Integrator, first: Array, second: Array) -> float:
-    """Largest difference of two states as mesh deflections and their rates.
+    """Return the largest difference of two states, each coordinate and rate weighted as a mesh
+    deflection.
+
+    It is the largest component of |first - second| times the integrator's weights, over the length scale.
 
     Parameters
     ----------
@@ -148,7 +159,7 @@ def change(integrator: Integrator, first: Array, second: Array) -> float:
 
 
 def largest(integrator: Integrator, gaps: Array) -> Array:
-    """Largest component of each of several differences of states, measured as by change().
+    """Return the largest weighted component of each of several differences of states, see change().
 
     Parameters
     ----------
@@ -168,7 +179,8 @@ def largest(integrator: Integrator, gaps: Array) -> Array:
 
 
 def changes(integrator: Integrator, ends: Array, longest: int) -> Array:
-    """change() of the last state of a run from the states one to `longest` periods before it.
+    """Return the change() of the last state of a run from each of the states 1 to `longest` periods
+    before it.
 
     Parameters
     ----------
@@ -222,7 +234,11 @@ def monodromy(integrator: Integrator, state: Array, period: int) -> tuple[Array,
 
 @dataclass(frozen=True, eq=False)
 class _Tangent:
-    """Linearised map over the period at a state: matrix, its eigenvalues and eigenvectors, largest first."""
+    """Linearised map over the period at a state (2 n,): its matrix (2 n, 2 n), eigenvalues and
+    eigenvectors, largest first.
+
+    `divergence` is the integral of the trace of the equations' matrix over the period.
+    """
 
     state: Array
     matrix: Array
@@ -240,7 +256,8 @@ class _Tangent:
         return max(float(off[off > UNIT_TOLERANCE].min(initial=1.0)), 1e-3)
 
     def correction(self, gap: Array) -> Array:
-        """Return Newton's step of the state for its change `gap` (2 n,) over the period.
+        """Return Newton's step (2 n,) of the state for its change `gap` (2 n,), end less start, over the
+        period.
 
         Positions along neutral directions are free: the solution of minimum norm leaves them.
         """
@@ -309,7 +326,7 @@ def shoot(
 
 
 def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunResult, _Tangent]:
-    """Run from a state (2, n) over the period, and linearise the map there."""
+    """Run from a state (2, n) over the period, and return the run and the map linearised there."""
     matrix, result = monodromy(integrator, state, period)
     multipliers, vectors = np.linalg.eig(matrix)
     order = by_modulus(multipliers)
@@ -342,7 +359,9 @@ def shortest_period(integrator: Integrator, start: Array, ends: Array, residual:
 
 
 def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
-    """Build an orbit with its multipliers, checked against Liouville's formula."""
+    """Build an orbit from a converged state, with the multipliers of `tangent` and their check by
+    Liouville's formula.
+    """
     multipliers = tangent.multipliers
     sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
@@ -360,7 +379,7 @@ def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orb
 
 
 def near_for_ever(integrator: Integrator, orbit: Orbit, distance: float) -> bool:
-    """Whether a run at some distance from a stable orbit stays there.
+    """Whether a run at some distance from a stable orbit can never leave it again.
 
     It does if the distance is within the error of the steps, and small beside what the slowest disturbance
     loses in a period.
@@ -399,7 +418,7 @@ def drawn_in(integrator: Integrator, orbit: Orbit, ends: Array, since: int) -> b
     ends : (periods, 2, n) array
         States of the run at the ends of mesh periods, m and m/rad.
     since : int
-        Number of periods between the last end and the last one that belongs to the orbit's state.
+        Number of mesh periods between the last end and the last one at which the orbit is at its `state`.
 
     Returns
     -------

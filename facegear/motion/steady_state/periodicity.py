@@ -56,7 +56,7 @@ class BestReturn:
 
     @property
     def rate(self) -> float:
-        """Factor by which the change falls each period."""
+        """Factor by which the change falls in each mesh period: the trend's TREND-th root."""
         return self.trend ** (1.0 / TREND)
 
     def periods_left(self, goal: float) -> float:
@@ -127,7 +127,8 @@ def often_seems_to_close(integrator: Integrator, ends: Array, settings: Settings
 
 
 def trend(integrator: Integrator, ends: Array, period: int) -> float:
-    """Largest change over a period in the last TREND periods, over that in the TREND before.
+    """Return the largest change over a period in the last TREND mesh periods, over that in the TREND
+    before them.
 
     Parameters
     ----------
@@ -152,7 +153,7 @@ def trend(integrator: Integrator, ends: Array, period: int) -> float:
 
 
 def closed_period(integrator: Integrator, ends: Array, near: BestReturn, settings: Settings) -> int:
-    """Find the period on which a run has closed by itself.
+    """Find the period after which a run repeats, by the changes of its own states alone.
 
     A small change is not enough: a run that creeps past the place where an orbit has just vanished, or off an
     unstable one, changes little, too. The change that is still to come, if it continues to fall as it does,
@@ -215,7 +216,9 @@ def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
 
 
 def _at_rest(near: BestReturn, goal: float) -> bool:
-    """Whether a run has converged, judged by its residual and rate of approach."""
+    """Whether the change over the period, and the sum of all changes still to come, are within a goal
+    (length scales).
+    """
     if near.residual > goal or np.isnan(near.trend):
         return False
     return near.residual <= 10.0 * goal * max(1.0 - near.rate, 1e-3)
@@ -227,7 +230,9 @@ NEAR = 0.02
 
 @dataclass(frozen=True, eq=False)
 class KnownOrbit:
-    """A stable orbit, and the states (period, 2, n) at the ends of its periods."""
+    """A stable orbit, and the states (period, 2, n) at the ends of its mesh periods, to end runs that
+    come to it.
+    """
 
     orbit: Orbit
     states: Array
@@ -284,7 +289,9 @@ def known_orbit(integrator: Integrator, orbit: Orbit | None) -> KnownOrbit | Non
 
 
 class StateHistory:
-    """The last `capacity` states (periods, 2, n) of a run at the ends of periods."""
+    """Buffer of at least the last `capacity` states (2, n) of a run at the ends of periods; `states`
+    returns them.
+    """
 
     def __init__(self, capacity: int, shape: tuple[int, ...]) -> None:
         self.capacity, self.count = capacity, 0
@@ -292,7 +299,7 @@ class StateHistory:
 
     @property
     def states(self) -> Array:
-        """Stored states, oldest first."""
+        """Last states (up to capacity, 2, n), oldest first, m and m/rad; a view of the buffer."""
         return self.buffer[max(self.count - self.capacity, 0) : self.count]
 
     def reserve(self, periods: int) -> Array:

@@ -31,7 +31,7 @@ class SteadyState:
     Attributes
     ----------
     system
-        What was integrated.
+        Equations of motion that were integrated.
     motion
         Class of motion.
     period
@@ -43,9 +43,9 @@ class SteadyState:
     periods, per_period
         Mesh periods (the orbit's own period, else the window) and samples in each.
     coordinates : (K, n)
-        Of the system.
+        Samples of the system's coordinates.
     averages
-        Over the whole response.
+        Exact time averages over the whole response, with forces in N.
     contact_fractions : (3, contacts)
         Fraction of the time that each mesh or flank spends open, on its drive and on its back flank, as the
         steps count it.
@@ -59,7 +59,7 @@ class SteadyState:
         Motions to which this start and another one came, where the two differ and the motion is called not
         settled for that reason alone; else None.
     state
-        At the end.
+        State at the end, by time.
     """
 
     system: System
@@ -80,12 +80,16 @@ class SteadyState:
 
     @property
     def label(self) -> str:
-        """`period-n` or the class of motion."""
+        """Label of the motion: `period-n` with n mesh periods, or the class of a motion that is not
+        periodic.
+        """
         return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
 
     @property
     def multipliers(self) -> ComplexArray | None:
-        """Floquet multipliers (2 n,) of the orbit."""
+        """Floquet multipliers (2 n,) of the orbit, largest modulus first; None where no orbit was
+        refined.
+        """
         return None if self.orbit is None else self.orbit.multipliers
 
     @property
@@ -95,7 +99,9 @@ class SteadyState:
 
     @cached_property
     def deflections(self) -> Array:
-        """Deflections of the samples (K, meshes), with e(t) taken off, m."""
+        """Deflections (K, meshes) of the samples, m, less the error e(t); see by_mesh() for meshes with
+        two flanks.
+        """
         return by_mesh(self.system, self._contact_deflections)
 
     @cached_property
@@ -105,7 +111,9 @@ class SteadyState:
 
     @cached_property
     def forces(self) -> Array:
-        """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
+        """Elastic mesh forces (K, meshes) of the samples, N, by the mesh law; positive on the drive
+        flank.
+        """
         return mesh_forces(self.system, self._contact_deflections, self.per_period)
 
     @property
@@ -115,24 +123,30 @@ class SteadyState:
 
     @cached_property
     def _contact_deflections(self) -> Array:
-        """Deflections of each mesh or flank."""
+        """Deflections (K, contacts) of each mesh, or each flank where meshes have two, m, see
+        each_deflection().
+        """
         return each_deflection(self.system, self.coordinates, self.per_period)
 
     @property
     def past_law(self) -> Array:
-        """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
+        """Fraction of samples (meshes,) at which a mesh is compressed beyond the last level of its law's
+        table.
+        """
         if self.system.law.straight:
             return np.zeros(self.system.pairs or self.system.contacts)
         return past_law(self.system, self._contact_deflections)
 
     @property
     def moments(self) -> Moments:
-        """Mean, RMS, extremes of the mesh deflections, m, exact for the steps' polynomials."""
+        """Mean, RMS, extremes of the mesh deflections, m, each (meshes,); exact for the polynomials of
+        the steps.
+        """
         return self.averages.meshes(self.motion is Motion.PERIODIC)
 
     @property
     def mean_forces(self) -> Array:
-        """Mean and mean magnitude (2, meshes) of the elastic mesh forces, N."""
+        """Means of the elastic mesh forces, then of their magnitudes, (2, meshes), N."""
         return self.averages.force
 
     @property

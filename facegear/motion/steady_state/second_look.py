@@ -49,7 +49,7 @@ def find_disagreement(
     integrator : Integrator
         Integrates the system at one mesh frequency.
     start : (2, n) array
-        State by phase from which the motion was started, m and m/rad.
+        State by phase from which the motion was started first, m and m/rad.
     settings : Settings
         Settings of the run; they say how often and how far aside motions are started again.
     run : WatchResult
@@ -58,8 +58,8 @@ def find_disagreement(
     Returns
     -------
     RunPlan of tuple or None
-        Computation that returns where the start that disagrees has come to and its motion; None if the class
-        holds.
+        Generator for requests.alone() or side_by_side(), which returns where the start that disagrees has
+        come to and its motion; None if the class holds.
     """
     first, motion = run.settling_result, run.motion
     if not settings.second_looks or motion is Motion.NOT_SETTLED:
@@ -149,7 +149,7 @@ def other_starts(
 def withdraw_class(
     integrator: Integrator, run: WatchResult, look: SettlingResult, settings: Settings
 ) -> RunPlan[WatchResult]:
-    """Call a motion not settled where another start came to another motion.
+    """Return the result of a motion as not settled, because another start came to another motion.
 
     It is measured on the run that did not close, if there is one.
 
@@ -167,7 +167,7 @@ def withdraw_class(
     Returns
     -------
     RunPlan of WatchResult
-        Computation that returns the result.
+        Generator for requests.alone() or side_by_side(), which returns the result.
     """
     periods_run = run.periods_run + look.periods_run
     if not run.settling_result.period:

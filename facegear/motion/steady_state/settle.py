@@ -68,7 +68,7 @@ class SettlingResult:
     Attributes
     ----------
     state : (2, n) array
-        State by phase.
+        State by phase at the end of the run, or of the orbit if it was refined.
     period : int
         Number of mesh periods; 0 if the motion does not repeat.
     residual : float
@@ -78,7 +78,8 @@ class SettlingResult:
     periods_run : int
         Number of mesh periods run.
     ends : (periods, 2, n) array
-        Last states at the end of a period.
+        Last states at the ends of mesh periods, oldest first, m and m/rad; the oldest of a long run are
+        dropped.
     is_known_orbit : bool
         Whether it is the orbit that was known before.
     aperiodic_until : int
@@ -124,7 +125,11 @@ def count_unsteady_periods(integrator: Integrator, run: SettlingResult, period: 
 
 
 def _changes_are_large(integrator: Integrator, ends: Array, period: int) -> Mask:
-    """Mask of the mesh periods at whose end the change over a period is not small."""
+    """Return at which of the mesh periods after the first `period` the change over a period is above
+    SMALL, a mask.
+
+    `ends` (periods, 2, n) are the states at the ends of mesh periods.
+    """
     return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL
 
 
@@ -135,7 +140,7 @@ def settle(
     ends: Array | None = None,
     known_orbit: KnownOrbit | None = None,
 ) -> SettlingResult:
-    """Run a single system until it settles, see settling().
+    """Run a single system until it settles, see settling(); no other run is integrated beside it.
 
     Parameters
     ----------
@@ -188,14 +193,17 @@ def settling(
     Returns
     -------
     RunPlan of SettlingResult
-        Computation that returns where the run came to rest.
+        Generator for requests.alone() or side_by_side(), which returns where the run came to rest.
     """
     return SettlingRun(integrator, state, settings, ends, known_orbit).settle()
 
 
 class SettlingRun:
-    """A run that has not settled yet. `orbit` is the last to which Newton's method came, after `orbit_at`
-    periods.
+    """A run that has not settled yet; settle() makes a run plan of it.
+
+    `orbit` is the last to which Newton's method came, after `orbit_at` periods. `block` is the least
+    number of periods in a block, `dwell` the number before anything is decided; `history` holds the last
+    states.
 
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
     """
@@ -222,7 +230,7 @@ class SettlingRun:
 
     @property
     def ends(self) -> Array:
-        """The last states at the end of a period, oldest first."""
+        """Last states (periods, 2, n) at the ends of mesh periods, oldest first, m and m/rad."""
         return self.history.states
 
     def settle(self) -> RunPlan[SettlingResult]:
@@ -231,7 +239,7 @@ class SettlingRun:
         Returns
         -------
         RunPlan of SettlingResult
-            Computation that returns where the run came to rest.
+            Generator for requests.alone() or side_by_side(), which returns where the run came to rest.
         """
         while True:
             yield from self._advance()
@@ -255,7 +263,9 @@ class SettlingRun:
                 return self._in_noise(near) or self._result(0, near.residual, None)
 
     def _match_known_orbit(self) -> SettlingResult | None:
-        """Return the result for the orbit that was known before, if the run has come to it."""
+        """Return the result with a state of the orbit that was known before, if the run has come to it,
+        else None.
+        """
         if self.known_orbit is None or not len(self.ends):
             return None
         match = self.known_orbit.attracting_state(self.integrator, self.ends)
@@ -267,7 +277,7 @@ class SettlingRun:
         )
 
     def _advance(self) -> RunPlan[None]:
-        """Run a further block of periods and store their end states."""
+        """Run plan of a further block of periods; their end states go to the history."""
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.initial_count and self.known_orbit is None:
@@ -280,8 +290,10 @@ class SettlingRun:
         self.periods_run += block
 
     def _find_orbit(self, near: BestReturn, last: bool) -> SettlingResult | None:
-        """Return the result for the orbit that attracts the run, if there is one; it is sought where
-        that saves time.
+        """Return the result for the orbit that attracts the run, if there is one, else None.
+
+        Newton's method seeks it where that saves time; `last` says that the run has reached its maximum
+        number of periods. A run on an unstable orbit is kicked off it.
         """
         if self._worth_trying(near, last):
             self.tried_residuals[near.period] = near.residual
@@ -300,7 +312,11 @@ class SettlingRun:
         return None
 
     def _worth_trying(self, near: BestReturn, last: bool) -> bool:
-        """Whether Newton's method is the cheaper way to continue, and has not failed here before."""
+        """Whether Newton's method is the cheaper way to continue, and has not failed from a change nearly
+        as small.
+
+        If so, its cost in mesh periods is added to `newton_cost`.
+        """
         again = near.residual < 0.1 * self.tried_residuals.get(near.period, np.inf)
         cost = NEWTON_STEPS * NEWTON_COST * near.period
         cheap = self.newton_cost + cost <= self.periods_run or last
@@ -311,15 +327,17 @@ class SettlingRun:
         return worth
 
     def _shot(self, period: int, matrices: int = MATRICES) -> Orbit | None:
-        """Solve for a periodic orbit from the current state by shooting."""
+        """Solve for an orbit of `period` mesh periods from the current state by shooting; None where it
+        fails.
+        """
         return shoot(self.integrator, self.state, period, self.settings.periodic_residual, matrices)
 
     def _by_itself(self, near: BestReturn, last: bool) -> SettlingResult | None:
-        """Return the motion on which the run has closed without help, with its multipliers if they are
-        wanted.
+        """Return the motion on which the run has closed by itself, with its multipliers if `refine` asks
+        for them, or None.
 
-        Newton's method detects a motion that only creeps by, because it finds no orbit there. Then the run
-        continues.
+        Newton's method detects a motion that only creeps by, because it finds no orbit there. Then the
+        run continues.
         """
         period = closed_period(self.integrator, self.ends, near, self.settings)
         if not period:
@@ -339,7 +357,9 @@ class SettlingRun:
         return self._result(period if orbit is None else orbit.period, near.residual, orbit)
 
     def _in_noise(self, near: BestReturn) -> SettlingResult | None:
-        """Return the motion of the shortest period about which only the choice of steps moves the run."""
+        """Return the orbit of the shortest period near which only the errors of steps move the run; None
+        if there is none.
+        """
         noise = NOISE * self.settings.tolerance
         close = np.flatnonzero(changes(self.integrator, self.ends, self.settings.longest_period) < noise)
         orbit = self._shot(int(close[0]) + 1, matrices=1) if close.size else None
@@ -351,7 +371,7 @@ class SettlingRun:
         return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
-        """Whether an orbit is the one that the run is on, up to what is left to decay and the errors of
+        """Whether the run's state lies at an orbit's state, up to what is left to decay and the errors of
         steps.
         """
         distance = orbit.distance(self.integrator, self.state)
@@ -359,18 +379,22 @@ class SettlingRun:
         return distance <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
 
     def _stands_on(self, orbit: Orbit, near: BestReturn) -> bool:
-        """Whether a run has come to rest where the orbit attracts it.
+        """Whether the run has come to rest at an orbit found by Newton's method, so that no more returns
+        must be seen.
 
-        The orbit is found in the steps that tangents need. The run's own steps may keep it one step's error
-        aside.
+        The orbit is found in the steps that tangents need. The run's own steps may keep it one step's
+        error aside.
         """
         left = near.residual / max(1.0 - abs(orbit.multipliers[0]), 1e-3)
         whole = near.period % orbit.period == 0
         return whole and left <= 10.0 * self.settings.periodic_residual and self._is_here(orbit)
 
     def _kick(self, near: BestReturn) -> None:
-        """Move a run off an unstable orbit that holds it, in the direction in which it leaves already,
-        if it does.
+        """Move a run off the unstable orbit `orbit` by KICK along its leading direction, if the orbit
+        holds the run.
+
+        The kick goes to the side to which the run leaves already. The history is emptied: the run begins
+        anew.
         """
         orbit = self.orbit
         assert orbit is not None
@@ -385,7 +409,9 @@ class SettlingRun:
         self.initial_count = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> SettlingResult:
-        """Return the result with an orbit, or with the current state without one."""
+        """Return the result for a period and residual, with the orbit's state and residual if there is an
+        orbit.
+        """
         state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
         return SettlingResult(
@@ -394,7 +420,7 @@ class SettlingRun:
 
 
 def _blocks(integrator: Integrator, settings: Settings) -> tuple[int, int]:
-    """Number of periods in a block, and number to run before anything is decided.
+    """Return the number of periods in a block, and the number to run before anything is decided.
 
     Slow speeds forget within fewer periods: 30 time constants of the least damped coordinate are plenty.
     """

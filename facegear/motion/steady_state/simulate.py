@@ -34,14 +34,17 @@ from facegear.motion.symmetries import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A machine with its reduction and equations of motion, to be used at many speeds."""
+    """A machine with its reduced coordinates and equations of motion, to be used at many speeds; see
+    build_model().
+    """
 
     machine: Machine
     reduction: Reduction
     system: System
 
     def displacements(self, response: SteadyState) -> Array:
-        """Displacements of all bodies in a response; the free rigid rotation is left out.
+        """Compute the displacements along all coordinates of the linear model (LinearModel.labels),
+        without the free rigid rotation.
 
         Parameters
         ----------
@@ -57,7 +60,8 @@ class Model:
 
 
 def build_model(machine: Machine) -> Model:
-    """Reduce a machine once for all speeds.
+    """Reduce a machine's coordinates, without truncation, and make its equations of motion, once for all
+    speeds.
 
     Parameters
     ----------
@@ -82,7 +86,11 @@ def build_model(machine: Machine) -> Model:
 
 
 def _excited(machine: Machine, basis: Array, system: System) -> System:
-    """Add the periodic torques to a system. Raises InvalidInput where one does not repeat with the mesh."""
+    """Return the system with the load of the machine's periodic torques added. Raises InvalidInput.
+
+    `basis` (dof, n) is that of the reduction. InvalidInput is raised where a torque does not repeat with
+    the mesh.
+    """
     if not machine.excitations:
         return system
     last = max(excitation.mesh_harmonic for excitation in machine.excitations)
@@ -98,12 +106,14 @@ def _excited(machine: Machine, basis: Array, system: System) -> System:
 
 @lru_cache(maxsize=8)
 def _cached_reduction(machine: Machine) -> Reduction:
-    """Reduce a machine's coordinates; equal machines share the result."""
+    """Reduce the coordinates of a machine without errors; the result is shared by equal machines and must
+    not be changed.
+    """
     return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 
 def static_start(model: Model) -> State:
-    """State at rest in the static equilibrium with mean stiffness.
+    """Return the state at rest in the static equilibrium with mean stiffness, in reduced coordinates.
 
     Parameters
     ----------
@@ -127,7 +137,10 @@ def simulate(
     start: State | None = None,
     guide: Guide | None = None,
 ) -> SteadyState:
-    """Compute the steady state at a pinion speed, from `start` or from static equilibrium.
+    """Compute the steady state of a machine at a pinion speed, from `start` or from static equilibrium.
+
+    The machine is integrated until its motion repeats, and the periodic orbit is refined by Newton's
+    method. A motion that does not repeat is classified by its largest Lyapunov exponent.
 
     Parameters
     ----------
@@ -162,7 +175,7 @@ def simulating(
     start: State | None = None,
     guide: Guide | None = None,
 ) -> RunPlan[SteadyState]:
-    """Run plan of simulate(), for many computations side by side.
+    """Return the run plan of simulate(), to compute many steady states side by side with side_by_side().
 
     Parameters
     ----------
@@ -180,7 +193,7 @@ def simulating(
     Returns
     -------
     RunPlan of SteadyState
-        Computation that returns the response.
+        Generator for requests.alone() or side_by_side(), which returns the response.
     """
     return (yield from (yield from start_run(model, speed_rpm, settings, start, guide)).follow())
 
@@ -194,7 +207,7 @@ class StartedRun:
     system : System
         Equations of motion.
     first_watch : FirstWatch
-        What the first watch has shown.
+        The run up to where it settled or was first taken not to settle.
     speed_rpm : float
         Pinion speed.
     start_symmetries : tuple of Symmetry
@@ -218,7 +231,9 @@ class StartedRun:
 
     @property
     def motion_symmetries(self) -> tuple[Symmetry, ...]:
-        """Symmetries of the motion that the run hands on."""
+        """Symmetries that map the motion the run hands on to itself; all of the system where it has not
+        settled.
+        """
         return held_after(self.first_watch, self.system)
 
     def follow(self) -> RunPlan[SteadyState]:
@@ -229,7 +244,7 @@ class StartedRun:
         Returns
         -------
         RunPlan of SteadyState
-            Computation that returns the response.
+            Generator for requests.alone() or side_by_side(), which returns the response.
         """
         with _naming(self.speed_rpm):
             response = yield from _steady(self.system, self.first_watch)
@@ -253,7 +268,10 @@ def start_run(
     known_orbit: KnownOrbit | None = None,
     start_symmetries: Sequence[Symmetry] | None = None,
 ) -> RunPlan[StartedRun]:
-    """Run plan of the first watch of simulate(); it ends where the run comes to a known orbit of the model.
+    """Return the run plan of the first part of simulate(): a run until it settles, or is first taken not
+    to settle.
+
+    The rest is StartedRun.follow(). A run that comes to `known_orbit` ends there.
 
     Where the run breaks a symmetry of its start, a rule decides which of the mirror images is taken. A guide
     leads to the image next to it.
@@ -278,7 +296,7 @@ def start_run(
     Returns
     -------
     RunPlan of StartedRun
-        Computation that returns the run after its first watch.
+        Generator for requests.alone() or side_by_side(), which returns the run after its first watch.
     """
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
@@ -297,7 +315,7 @@ def start_run(
 
 @contextmanager
 def _naming(speed_rpm: float) -> Iterator[None]:
-    """Name the speed in the message of a computation that does not converge."""
+    """Context in which a NotConverged is raised again with the speed as its place."""
     try:
         yield
     except NotConverged as error:
@@ -307,7 +325,7 @@ def _naming(speed_rpm: float) -> Iterator[None]:
 def steady_state(
     system: System, frequency: float, settings: Settings, start: State, guide: Guide | None = None
 ) -> SteadyState:
-    """Compute the steady state of any system.
+    """Compute the steady state of any system: run it until it settles, else classify its motion.
 
     If a class of motion does not come out again from starts a little aside, it is withdrawn. Then the motion
     is not settled, and `looks` says why.
@@ -347,7 +365,9 @@ def _begin_watch(
     guide: Guide | None,
     known_orbit: KnownOrbit | None = None,
 ) -> RunPlan[FirstWatch]:
-    """Run plan of the first watch of a system from a start."""
+    """Run plan of the first watch of a system from a start; a guide that does not serve the system is
+    left out.
+    """
     guide = guide if guide is not None and settings.refine and guide.serves(system) else None
     like = None if guide is None else guide.integrator
     integrator = Integrator(system, frequency, settings.tolerance, settings.order, like)
@@ -355,7 +375,9 @@ def _begin_watch(
 
 
 def _steady(system: System, first_watch: FirstWatch) -> RunPlan[SteadyState]:
-    """Run plan of the steady state of a run, and of the check whether it holds from other starts."""
+    """Run plan of the steady state of a run after its first watch, and of the check whether it holds from
+    other starts.
+    """
     integrator, settings = first_watch.integrator, first_watch.settings
     watch_result = yield from watch(first_watch)
     disagreement = yield from find_disagreement(integrator, first_watch.start, settings, watch_result)

@@ -19,7 +19,8 @@ values).
 
 
 def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
-    """Moments of evenly spaced samples over whole periods; extremes are located between the samples.
+    """Compute the moments of evenly spaced samples over whole periods; extremes are located between the
+    samples.
 
     They are right where the samples resolve all motion; the moments of a response come from its step
     polynomials.
@@ -61,7 +62,8 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
 
 
 def batch_means(values: Array, per_period: int) -> Array:
-    """Means over batches of whole periods.
+    """Compute the means over at most BATCHES batches of equally many whole periods; periods left over are
+    dropped.
 
     Parameters
     ----------
@@ -93,7 +95,7 @@ def drifts(averages: Averages, by_period: Array) -> bool:
     averages : Averages
         Averages over the batches of the run.
     by_period : (periods, columns) array
-        RMS in each period, m.
+        RMS of each mesh in each mesh period, without the mean, m.
 
     Returns
     -------
@@ -114,7 +116,10 @@ def drifts(averages: Averages, by_period: Array) -> bool:
 
 
 def _ac_rms(averages: Averages) -> tuple[Array, Array]:
-    """AC RMS (meshes,) of the deflections over a few batches, and its half-width by successive batches."""
+    """Return the AC RMS (meshes,) of the deflections over the batches, m, and its 95 % half-width, m.
+
+    The half-width allows for the correlation of successive batches, see successive_interval().
+    """
     ac_rms = averages.meshes(False).ac_rms
     half_width = successive_interval(averages.centred_squares)
     return ac_rms, half_width / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))
@@ -129,7 +134,7 @@ ORDERS = np.arange(SEGMENT * MAX_ORDER + 1) / SEGMENT
 
 
 def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Array]:
-    """Amplitude spectrum of whole periods; Hann-weighted unless periodic.
+    """Compute the one-sided amplitude spectrum of whole periods by FFT; Hann-weighted unless periodic.
 
     A sine of amplitude A at an order of the grid has the amplitude A (the mean stays the mean).
 
@@ -158,7 +163,10 @@ def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Ar
 
 
 def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
-    """Amplitudes on the fixed grid ORDERS, RMS-averaged over segments (Welch 1967).
+    """Compute the amplitudes on the fixed grid ORDERS, RMS-averaged over segments of SEGMENT periods
+    (Welch 1967).
+
+    The entry at order 0 is the magnitude of the mean.
 
     Lines of a period that does not divide SEGMENT go to the nearest order of the grid.
 

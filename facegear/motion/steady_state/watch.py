@@ -34,11 +34,13 @@ class WatchResult:
     exponent : Exponent or None
         Largest Lyapunov exponent of a motion that is not periodic.
     window : Window
-        Stretch on which the motion is measured.
+        Samples and averages from which the motion is measured: one period of it, or the window of the
+        exponent.
     periods_run : int
         Number of mesh periods run.
     unsteady_periods : int
-        Number of unsteady mesh periods when the run was first taken not to close.
+        Number of unsteady mesh periods, see count_unsteady_periods(), when the run was first taken not to
+        close.
     """
 
     settling_result: SettlingResult
@@ -69,7 +71,8 @@ class FirstWatch:
     settling_result : SettlingResult
         Where the run settled, if it did.
     watch_result : WatchResult or None
-        The result where the run has settled and nothing is left to watch.
+        The result where the run has settled and nothing is left to watch; None where it has not settled
+        or came to a known orbit.
     """
 
     integrator: Integrator
@@ -80,7 +83,7 @@ class FirstWatch:
 
     @property
     def state(self) -> Array:
-        """Current state (2, n) of the run: on the motion on which it has settled, or on its way."""
+        """State by phase (2, n): on the motion in which the run has settled, else where the run is."""
         return self.settling_result.state if self.watch_result is None else self.watch_result.window.ends[-1]
 
 
@@ -110,7 +113,7 @@ def begin(
     Returns
     -------
     RunPlan of FirstWatch
-        Computation that returns the first watch.
+        Generator for requests.alone() or side_by_side(), which returns the first watch.
     """
     settling_result = None if guide is None else settle_by_guide(integrator, state, guide)
     settling_result = settling_result or (
@@ -138,7 +141,7 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
     Returns
     -------
     RunPlan of WatchResult
-        Computation that returns the result.
+        Generator for requests.alone() or side_by_side(), which returns the result.
     """
     if first_watch.watch_result is not None:
         return first_watch.watch_result
@@ -171,7 +174,7 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
 def _periodic(
     integrator: Integrator, settling_result: SettlingResult, settings: Settings, periods_run: int
 ) -> WatchResult:
-    """Return the result of a run that settled on a periodic motion, measured over one window."""
+    """Return the result of a run that settled on a periodic motion, with a window of one period of it."""
     window = run_window(integrator, settling_result.state, settling_result.period, settings.samples)
     return WatchResult(settling_result, Motion.PERIODIC, None, window, periods_run)
 
@@ -193,8 +196,8 @@ def classify_run(
     Returns
     -------
     RunPlan of tuple
-        Computation that returns the class of motion, NOT_SETTLED if it stays open, and the largest Lyapunov
-        exponent.
+        Generator for requests.alone() or side_by_side(), which returns the class of motion, NOT_SETTLED
+        if it stays open, and the largest Lyapunov exponent.
     """
     exponent = yield from largest_exponent(integrator, run.state, settings)
     return _class(integrator, run, exponent, exponent.window, settings), exponent
@@ -207,7 +210,11 @@ def _class(
     window: Window,
     settings: Settings,
 ) -> Motion:
-    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after it."""
+    """Return the class of a motion that did not close, from its Lyapunov exponent and the window after
+    it.
+
+    It is NOT_SETTLED if the run seems to close, drifts, or the growth of disturbances is inconclusive.
+    """
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
     near = best_return(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settling_result.residual, near.residual) < ESCAPING

@@ -21,7 +21,8 @@ FINENESS = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """A window of whole mesh periods.
+    """Samples and averages of a motion over a window of whole mesh periods, with n coordinates and m
+    rows.
 
     Attributes
     ----------
@@ -36,7 +37,7 @@ class Window:
     averages : Averages
         Exact averages.
     growth : (periods,) array
-        Logarithmic growth of a disturbance in each period, if one was run.
+        Natural logarithm of the growth of a disturbance in each period, if one was run.
     tangent : (1, 2, n) array
         The disturbance at the end.
     """
@@ -97,7 +98,7 @@ def window(
     Returns
     -------
     RunPlan of Window
-        Computation that returns the window.
+        Generator for requests.alone() or side_by_side(), which returns the window.
 
     Raises
     ------
@@ -163,7 +164,7 @@ NEUTRAL = 2e-3
 
 
 class Growth(StrEnum):
-    """Behaviour of a small disturbance."""
+    """Behaviour of a small disturbance of a motion, by the sign of the largest Lyapunov exponent."""
 
     GROWS = "grows"
     NEUTRAL = "neutral"
@@ -180,7 +181,7 @@ class Exponent:
     Attributes
     ----------
     growth : Growth
-        Conclusion.
+        Whether disturbances grow, by value and half-width.
     value, half_width : float
         Exponent per mesh period and its 95 % half-width.
     ends : (periods, 2, n) array
@@ -197,7 +198,7 @@ class Exponent:
 
 
 def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> RunPlan[Exponent]:
-    """Compute the largest exponent by one tangent vector over the settings' window.
+    """Compute the largest Lyapunov exponent by one tangent vector over the settings' window.
 
     The vector is scaled back to length one after every period (Parker and Chua 1989). While the exponent
     cannot be distinguished from zero the run is doubled, window by window, up to `extensions` times.
@@ -214,7 +215,7 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
     Returns
     -------
     RunPlan of Exponent
-        Computation that returns the exponent.
+        Generator for requests.alone() or side_by_side(), which returns the exponent.
     """
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())
@@ -240,7 +241,10 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
 
 
 def _classify_growth(rates: Array) -> tuple[Growth, float, float]:
-    """Classify growth rates (periods,); return the class, their mean and its half-width."""
+    """Return the class of growth rates (periods,) per mesh period, their mean and its 95 % half-width.
+
+    A neutral mean is that of smooth_mean(), any other that of BATCHES batches.
+    """
     batches = np.array([part.mean() for part in np.array_split(rates, BATCHES)])
     mean, half = float(batches.mean()), float(independent_interval(batches))
     if mean - half > NEUTRAL:
@@ -252,8 +256,10 @@ def _classify_growth(rates: Array) -> tuple[Growth, float, float]:
 
 
 def smooth_mean(rates: Array) -> tuple[float, float]:
-    """Mean of a series weighted by exp(-1/(t(1 - t))), and its difference from those of two overlapping
-    parts.
+    """Compute the mean of a series weighted by exp(-1/(t(1 - t))), and how far the means of its parts
+    differ from it.
+
+    The parts are its first and its last three quarters.
 
     On a torus, where the growth only oscillates, it converges faster than any power of the length, while the
     plain mean errs by one oscillation over the length (Das et al. 2017).
@@ -274,6 +280,8 @@ def smooth_mean(rates: Array) -> tuple[float, float]:
 
 
 def _weighted_mean(rates: Array) -> float:
-    """Return the mean of rates with a smooth weight that vanishes at both ends."""
+    """Return the mean of rates (periods,) with the weight exp(-1 / (t (1 - t))), t from 0 to 1, which
+    vanishes at both ends.
+    """
     t = (np.arange(rates.size) + 0.5) / rates.size
     return float(np.average(rates, weights=np.exp(-1.0 / (t * (1.0 - t)))))

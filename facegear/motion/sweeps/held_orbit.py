@@ -25,7 +25,10 @@ SAME_ORBIT = 5e-3
 
 
 def distance(first: Array, second: Array) -> float:
-    """Largest ratio between two sets of AC RMS, as a logarithm, with a floor.
+    """Return the largest ratio between two sets of AC RMS over all meshes, as the magnitude of its
+    natural logarithm.
+
+    Values below FLOOR times the largest of both sets count as this floor.
 
     Parameters
     ----------
@@ -42,7 +45,7 @@ def distance(first: Array, second: Array) -> float:
 
 
 def image_distance(first: Array, second: Array, images: Integers) -> float:
-    """Smallest distance() of one set of AC RMS from the images of another.
+    """Return the smallest distance() of one set of AC RMS from the mirror images of another.
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ class HeldOrbit:
     period : int
         Number of mesh periods.
     state : State
-        A state on the orbit.
+        State on the orbit at the start of a mesh period.
     ac_rms : (meshes,) array
         AC RMS of the mesh deflections, m.
     multiplier : float
@@ -123,7 +126,7 @@ def machine_follower(model: Model, settings: Settings) -> "OrbitFollower":
 
 @dataclass(frozen=True, eq=False)
 class OrbitFollower:
-    """Follows periodic orbits over a speed.
+    """Follows stable periodic orbits from speed to speed; the speed may be any parameter of a system.
 
     Attributes
     ----------
@@ -151,12 +154,12 @@ class OrbitFollower:
         Returns
         -------
         HeldOrbit or None
-            None if there is no such orbit.
+            None if there is no stable orbit with this period near the state.
         """
         return self._stable(speed, state, period) if period else None
 
     def until_lost(self, orbit: HeldOrbit, end: float, resolution: float) -> tuple[HeldOrbit, float | None]:
-        """Follow an orbit to a speed, or until it is lost.
+        """Follow an orbit to a speed, or until it ends, loses its stability or jumps to another orbit.
 
         Parameters
         ----------
@@ -216,7 +219,9 @@ class OrbitFollower:
         return integrator.by_time(orbit.state + kick * off)
 
     def _stable(self, speed: float, state: State, period: int) -> HeldOrbit | None:
-        """Return the stable orbit of a period at a speed near a state; None if there is none."""
+        """Return the stable orbit of `period` mesh periods at a speed (rpm) near a state; None if there
+        is none.
+        """
         integrator, orbit = self._near(speed, state, period)
         if orbit is None or abs(orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
             return None
@@ -232,8 +237,11 @@ class OrbitFollower:
         )
 
     def _near(self, speed: float, state: State, period: int) -> tuple[Integrator, Orbit | None]:
-        """Return the integrator, and the orbit of a period at a speed to which a state belongs, stable or
-        not.
+        """Return the integrator at a speed (rpm), and the orbit of `period` mesh periods near a state,
+        stable or not.
+
+        The orbit is None if Newton's method finds none, one of a shorter period, or one farther than NEAR
+        away.
         """
         system, frequency = self.at(speed)
         integrator = Integrator(system, frequency, min(self.settings.tolerance, FINE))

@@ -88,10 +88,12 @@ class Jump:
     mesh : int
         Mesh in which the relative change is largest.
     largest : int
-        The sweep's position next to the jump with the larger response.
+        Index in the sweep of the one of the two speeds beside the jump whose response is larger in that
+        mesh.
     error : float
-        How far the speed of the change may lie from the bracket, rpm: its width where the motion before it
-        was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
+        Distance that the speed of the change may have from the bracket, rpm: its width where the motion
+        before it was followed as an orbit, else the sweep's step, since a run leaves irregular motion by
+        chance.
     is_followed : bool
         Whether the motion before it was followed as an orbit until it was lost.
     """
@@ -105,7 +107,9 @@ class Jump:
 
     @property
     def kind(self) -> JumpKind:
-        """Kind of the change, by the classes of motion on both sides."""
+        """Kind of the change: IRREGULAR if a side is not periodic, else JUMP if the motion was followed,
+        else STEP.
+        """
         if self.before.period == 0 or self.after.period == 0:
             return JumpKind.IRREGULAR
         return JumpKind.JUMP if self.is_followed else JumpKind.STEP
@@ -125,7 +129,8 @@ def suspects(piece: Piece) -> dict[int, bool]:
     Returns
     -------
     dict
-        Whether the change is abrupt, by position.
+        Whether the change is larger than those around it, by position i; False where it is only steep
+        between periodic motions.
     """
     ac_rms, interval = piece.deflection_ac_rms, piece.deflection_ac_rms_interval
     floor = FLOOR * ac_rms.max()
@@ -172,7 +177,8 @@ def refine(
     Returns
     -------
     RunPlan of Jump or None
-        Computation that returns the jump; None if the motion is not lost.
+        Generator for requests.alone() or side_by_side(), which returns the jump; None if the motion is
+        not lost.
     """
     before, end = (_stored_side(piece, i) for i in (position, position + 1))
     step = abs(end.speed - before.speed)
@@ -206,7 +212,9 @@ def refine(
 
 
 def _held_side(orbit: HeldOrbit, former: JumpSide) -> JumpSide:
-    """Return an orbit that was followed from the motion `former` as a side of a jump."""
+    """Return an orbit as a side of a jump; its `symmetry_broken` is that of the motion `former` from
+    which it was followed.
+    """
     return replace(
         former,
         speed=orbit.speed,
@@ -221,10 +229,12 @@ def _held_side(orbit: HeldOrbit, former: JumpSide) -> JumpSide:
 def _beyond(
     last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond, kicks: Sequence[float]
 ) -> RunPlan[JumpSide]:
-    """Find the motion that follows an orbit at a speed at which it is lost.
+    """Run plan that finds the motion after an orbit at a speed (rpm) at which the orbit is lost, as a
+    side of a jump.
 
-    It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
-    and larger disturbances are tried. A class that other starts have taken back stays undecided.
+    The runs start aside of the orbit by `kicks`, in length scales, one after the other until a run
+    settles. A motion may be left, and the next approached, so slowly that none does: then a run goes on
+    once, and larger kicks are tried. A class that other starts have taken back stays undecided.
     """
     for kick in kicks:
         state = follower.aside(last, speed, kick)
@@ -245,7 +255,12 @@ def _jump(
     error: float,
     is_followed: bool,
 ) -> Jump | None:
-    """Return the jump between two sides, or None if the rest is a steep but smooth change or noise."""
+    """Return the jump between two sides at a position of a piece, or None if the change is smooth or
+    noise.
+
+    `error` and `is_followed` are those of Jump. The AC RMS after it is that of the preferred mirror
+    image.
+    """
     if not abrupt(before, after, images):
         return None
     after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
@@ -257,10 +272,12 @@ def _jump(
 
 
 def _preferred(before: Array, after: Array, images: Integers) -> Integers:
-    """Return the image, a permutation of the meshes (meshes,), of the motion after a jump that is reported.
+    """Return the mirror image of the motion after a jump that is reported, as a permutation of the meshes
+    (meshes,).
 
-    Of the images that the symmetries of the motion before the jump allow, it is the one with the largest AC
-    RMS in the first mesh in which they differ.
+    `before` and `after` are AC RMS (meshes,), m, of both motions. Of the images that the symmetries of
+    the motion before the jump allow, it is the one with the largest AC RMS in the first mesh in which
+    they differ.
     """
     candidates = [image for image in images if distance(before, before[image]) <= SAME_ORBIT]
     digits = np.round(-np.log10(SAME_ORBIT)).astype(int)
@@ -269,7 +286,7 @@ def _preferred(before: Array, after: Array, images: Integers) -> Integers:
 
 
 def _stored_side(piece: Piece, position: int) -> JumpSide:
-    """Return the response that a sweep has found at one of its speeds."""
+    """Return the response that a sweep has found at the speed at a position, as a side of a jump."""
     return JumpSide(
         speed=float(piece.speeds[position]),
         ac_rms=piece.deflection_ac_rms[position],
@@ -300,7 +317,9 @@ def bracket(
     Returns
     -------
     RunPlan of tuple
-        Computation that returns the responses at both ends, in rpm and m, such as ac_rms (meshes,).
+        Generator for requests.alone() or side_by_side(), which returns the responses at both ends of the
+        last interval; each new run starts from the state on the `before` side, and belongs to the side
+        that its AC RMS (meshes,) in m are nearer to.
     """
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)
@@ -329,7 +348,8 @@ def abrupt(before: JumpSide, after: JumpSide, images: Integers) -> bool:
     Returns
     -------
     bool
-        True if the distance of their AC RMS is above MIN_CHANGE, or three times that if neither is periodic.
+        True if the AC RMS of a mesh differs by more than the fraction MIN_CHANGE, or three times that if
+        neither is periodic. Mirror images count as one.
     """
     regular = before.period > 0 or after.period > 0
     apart = image_distance(before.ac_rms, after.ac_rms, images)

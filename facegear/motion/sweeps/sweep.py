@@ -41,7 +41,7 @@ class Piece:
     largest_pull : (P, M) array
         Largest force by which the damper of a contact pulls its flanks together, N.
     open_fraction, drive_fraction, back_fraction : (P, M) array
-        Fractions of the time.
+        Fractions of the time that a mesh is open, on its drive flank, and on its back flank.
     past_law_fraction : (P, M) array
         Fraction of the samples at which a mesh is compressed beyond the last level of its law.
     translation_* : (P, B, 3) array
@@ -58,11 +58,12 @@ class Piece:
     spectrum : (P, M, orders) array
         Amplitude spectra of the mesh deflections, m.
     modal : (P, modes) array
-        RMS velocity scale omega * coordinate of every natural mode without mean, sqrt(J).
+        RMS of omega times the coordinate of every natural mode, without mean: the root of twice its
+        potential energy, sqrt(J).
     modal_order : (P,) array
         Multiple of the mesh frequency at which the strongest mode moves most.
     displacement, velocity : (P, n) array
-        State at the end.
+        State at the end of the run at each speed, by time.
     """
 
     speeds: Array
@@ -116,7 +117,9 @@ class Piece:
 
     @property
     def labels(self) -> list[str]:
-        """`period-n` or the class of motion at each speed."""
+        """Label of the motion at each speed: `period-n`, or its class where it is not periodic, see
+        Motion.
+        """
         return [
             f"period-{period}" if period else str(motion)
             for motion, period in zip(self.motion, self.period, strict=True)
@@ -188,7 +191,8 @@ def join_pieces(pieces: list[Piece]) -> Piece:
 def run_chunk(
     model: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
 ) -> tuple[Piece, Piece]:
-    """Run the overlap and the own speeds of a chunk; the first speed is started from static equilibrium.
+    """Run the overlap and the chunk's own speeds, see SweepPlan.chunk(); the first starts from static
+    equilibrium.
 
     Parameters
     ----------
@@ -199,7 +203,7 @@ def run_chunk(
     direction : str
         "up" or "down".
     number : int
-        Number of the chunk.
+        Number of the chunk, from 0.
     step : callable
         Called without arguments after each speed.
 
@@ -242,7 +246,7 @@ def run_speeds(
     Returns
     -------
     iterator of tuple
-        Speed, rpm, and response.
+        Speed, rpm, and response, in the order of the speeds; computed as the iterator is read.
     """
     responses = carried_over(model, speeds, settings, start, StartedRun.follow, step, start_symmetries)
     return zip(speeds.tolist(), responses, strict=True)
@@ -257,7 +261,8 @@ def carried_over(
     step: Callable[[], None] = lambda: None,
     start_symmetries: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
-    """Run plans for the motions at speeds in the given order, each started from the state of the one before.
+    """Run plans for the motions at speeds in the given order, each started from the state of the one
+    before.
 
     The state that a motion hands on is known after its first watch. Where the motion has settled, this is a
     state of the motion on which it has settled. Else it is the last state, as good as any other of an
@@ -274,7 +279,7 @@ def carried_over(
     start : State or None
         Start at the first speed; the static equilibrium if None.
     follow : callable
-        Makes a run plan of each started run.
+        Makes of each StartedRun a run plan, which returns the value to yield.
     step : callable
         Called without arguments after each first watch.
     start_symmetries : sequence of Symmetry, optional
@@ -298,7 +303,7 @@ def carried_over(
 
 
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
-    """Reduce responses to the numbers that a sweep stores.
+    """Reduce responses at several speeds to the numbers that a sweep stores, an array a quantity.
 
     Parameters
     ----------
@@ -325,9 +330,10 @@ def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
 def _row(
     views: Array, directions: int, speed: float, response: SteadyState
 ) -> dict[str, Array | float | str]:
-    """Return the numbers of one response that a sweep stores.
+    """Return the numbers of one response that a sweep stores, by the names of Piece's fields.
 
-    `views` (n, directions + modes) takes coordinates to translations and modes.
+    `views` (n, directions + modes) turns coordinates into the translations of all bodies along x, y, z,
+    then into modes.
     """
     periodic = response.period > 0
     meshes = response.moments

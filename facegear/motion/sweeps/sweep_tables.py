@@ -54,14 +54,15 @@ class Resonance:
 
 
 def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonance:
-    """Find the resonance to which a response belongs; modes of one frequency count together.
+    """Find the natural mode that holds most of a response's energy, of all modes or groups of equal
+    frequency.
 
     Parameters
     ----------
     piece : Piece
         Results of a sweep.
     position : int
-        Position of the speed.
+        Index of the speed in the piece.
     modes : Modes
         Natural modes of the machine.
     teeth : int
@@ -94,7 +95,7 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
     Returns
     -------
     list of tuple
-        Quantity (deflection, x, y or z), mesh or body, position, AC RMS in m.
+        Quantity (deflection, x, y or z), index of the mesh or body, index of the speed, AC RMS in m.
     """
     rows = []
     for mesh, curve in enumerate(piece.deflection_ac_rms.T):
@@ -109,7 +110,8 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
 
 
 def maxima(curve: Array) -> list[int]:
-    """Find the maxima that are PROMINENT times the higher of the valleys beside them.
+    """Find the maxima above PROMINENT times the higher valley beside them, and at least SMALL times the
+    largest value.
 
     Parameters
     ----------
@@ -170,8 +172,9 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
-        symmetry_broken. The unit is part of the quantity.
+        One row for each quantity, body or mesh (`machine` for quantities of the whole), and speed,
+        ascending. Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic,
+        after_irregular, symmetry_broken. The unit is part of the quantity.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     curves: list[tuple[str, str, np.ndarray]] = []
@@ -313,8 +316,8 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
     Returns
     -------
     DataFrame
-        RESONANCE_COLUMNS. `after_irregular`: that of the next speed, since a maximum needs both its
-        neighbours.
+        RESONANCE_COLUMNS. `value`: AC RMS in um. `after_irregular`: that of the next speed, since a
+        maximum needs both its neighbours.
     """
     rows, labels = [], piece.labels
     for quantity, item, position, value in peaks(piece):
@@ -337,12 +340,16 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
 
 
 def _after_irregular(piece: Piece, position: int) -> bool:
-    """Whether an irregular motion came up to the speed after this one, in the order of the run."""
+    """Whether a motion of the run up to the speed after this position, in the order of running, is not
+    periodic.
+    """
     return bool(piece.after_irregular[: position + 2].any())
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
-    """Return the columns that name a resonance: its kind, order and mode."""
+    """Return a resonance as the columns resonance (name), resonance_rpm, energy_fraction, mode and order
+    of a row.
+    """
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,
@@ -363,7 +370,7 @@ def seam_table(seams: list[Seam]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns direction, speed_rpm, kind, rerun.
+        Columns direction, speed_rpm, kind, rerun (number of speeds run again), see Seam.
     """
     columns = ["direction", "speed_rpm", "kind", "rerun"]
     return pd.DataFrame([asdict(seam) | {"kind": seam.kind.value} for seam in seams], columns=columns)

@@ -65,7 +65,8 @@ def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
     Returns
     -------
     dict
-        Arrays with the names and shapes of SHAPES, such as (speeds, meshes).
+        Arrays with the names and shapes of SHAPES, such as (speeds, meshes). NaN is stored as 0, with
+        False in the array `<name>_known`.
     """
     arrays: dict[str, AnyArray] = {}
     for part, piece in (("before", before), ("own", own_piece)):
@@ -100,7 +101,9 @@ def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
 
 
 class SeamKind(StrEnum):
-    """Agreement of two chunks where they meet."""
+    """Agreement of two chunks where they meet: equal periodic motions, run again, or irregular motions of
+    equal AC RMS.
+    """
 
     AGREEMENT = "agreed"
     RERUN = "rerun"
@@ -111,8 +114,8 @@ class SeamKind(StrEnum):
 class Seam:
     """Junction of two chunks, and the number of speeds that had to be run again from the end of the first.
 
-    With `irregular`, both are in irregular motion there, whose state is never forgotten; the chunks agree in
-    RMS only.
+    `rerun` is that number. With kind `irregular`, both are in irregular motion there, whose state is
+    never forgotten; the chunks agree in RMS only.
     """
 
     direction: str
@@ -138,7 +141,8 @@ def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | Non
     Returns
     -------
     SeamKind or None
-        None if they are different motions.
+        AGREEMENT for periodic motions of equal period and AC RMS, IRREGULAR for motions that are not
+        periodic and agree in AC RMS within their intervals; None for different motions.
     """
     rms, other_rms = first.deflection_ac_rms[i], second.deflection_ac_rms[j]
     periodic = first.periodic[i], second.periodic[j]
@@ -194,7 +198,7 @@ def assemble(
     Piece
         Results at all speeds.
     list of Seam
-        Seams between the chunks.
+        Seams between the chunks, with the number of speeds run again at each.
     """
     whole = chunks[0][1]
     seams: list[Seam] = []
@@ -223,7 +227,9 @@ def assemble(
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """Results of one direction of a sweep, in the order of running."""
+    """Results at all speeds of one direction of a sweep, in the order of running, with its seams and
+    bracketed jumps.
+    """
 
     piece: Piece
     seams: list[Seam]
@@ -286,8 +292,10 @@ def whole_sweep(
 
 
 def _on_threads(plans: Sequence[RunPlan[Jump | None]], threads: int) -> list[Jump | None]:
-    """Run plans on several threads and return their values; the compiled part runs without the interpreter's
-    lock.
+    """Run plans on several threads, every n-th plan on one, and return their values in the order of the
+    plans.
+
+    The compiled part runs without the interpreter's lock.
     """
     count = max(threads, 1)
     with ThreadPoolExecutor(count) as pool:
@@ -332,6 +340,6 @@ def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
 
 
 def _distance(jump: Jump, speed: float) -> float:
-    """Return by how much a speed lies outside a jump's interval, rpm."""
+    """Return by how much a speed lies outside a jump's bracket, rpm; 0 inside it."""
     low, high = sorted((jump.before.speed, jump.after.speed))
     return max(low - speed, speed - high, 0.0)
