@@ -125,7 +125,7 @@ def friction_quantities(
     dict[str, float]
         Columns `quantities.FRICTION`: loss (W, and % of the power in), hottest bulk, flash and contact
         temperature (C, flash in K), scuffing safety and margin (K), thinnest film (um), its ratio to
-        roughness, micropitting safety, and the part of the loss outside the torques of the contact
+        roughness, micropitting film ratio, and the part of the loss outside the torques of the contact
         analysis.
 
     Raises
