@@ -59,7 +59,7 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
     ltca : pd.DataFrame
         Table `ltca` of stage contact, of which position (pitches) and unloaded_ste_um are taken.
     pressure : Arrays
-        Arrays `pressure` of stage contact, SI units.
+        Arrays `pressure` of stage contact.
     section : ToothPair
         Section `tooth_pair` of the config.
 

@@ -77,6 +77,7 @@ def tables_of(law: Arrays) -> TablesOf:
 
     @cache
     def of_sides(sides: tuple[Side, ...]) -> tuple[FlankTables, ...]:
+        """Return the tables of drive and back flank of gears on these sides; a gear alone has row 0."""
         rows = [GEARS.index(side.value) if len(sides) > 1 else 0 for side in sides]
         numbers = law["flank_variant"][rows]
         return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
@@ -167,7 +168,8 @@ def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
     section : Transmission
         Section `transmission` of the config.
     torque : float
-        Torque on an input pinion by each of its meshes, N m; a negative one reverses all torques.
+        Torque on an input pinion by each of its meshes, N m. A positive one keeps the signs of all
+        torques, a negative one reverses them.
 
     Returns
     -------
@@ -208,6 +210,7 @@ def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]
     """
 
     def scale_torque(section: Mapping[str, Any]) -> dict[str, Any]:
+        """Return a section with its torque multiplied by the factor; a torque of None stays."""
         torque = section.get("torque_n_m")
         return {**section, "torque_n_m": torque if torque is None else part * torque}
 

@@ -177,6 +177,9 @@ def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
     """
 
     def excess(logarithm: float) -> float:
+        """Return the logarithm of the spare safety at a torque given as logarithm of its ratio to
+        `mesh_torque`.
+        """
         return log(estimate_safeties(draft, mesh_torque * exp(logarithm)).spare)
 
     nearest = "a larger module"
@@ -224,6 +227,7 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
     first_touch = 0.5 * curvature * nearest**2
 
     def excess(approach: float) -> float:
+        """Return the load of the strips at an approach (m) less the given one, both over STIFFNESS, m2."""
         reach = sqrt(2.0 * approach / curvature)
         start, end = max(inner, -reach), min(outer, reach)
         return approach * (end - start) - curvature * (end**3 - start**3) / 6.0 - approach_of_force

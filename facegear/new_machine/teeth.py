@@ -81,8 +81,8 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
     Candidates are tried from standard height downwards. Of each height, teeth with the gear's tips
     lowered and with deeper pinion roots follow. The profile shift is the smallest one without undercut.
     The first candidate is taken whose contact ratio is at least CONTACT_RATIO and whose smallest gap
-    beside the contact is at least SMALLEST_GAP modules. The analysis of gaps ends after MAX_ANALYSES
-    candidates.
+    beside the contact is at least SMALLEST_GAP modules. The search ends after MAX_ANALYSES analyses of
+    gaps.
 
     Parameters
     ----------

@@ -105,6 +105,7 @@ def assessor(
     sample_changes = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Quantities, Quantities]:
+        """Return the goals of a design by name, and all quantities of its nominal machine by column."""
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
         design_values = set_numbers(
             start, {key: float(number) for variable, number in numbers for key in variable.sets}

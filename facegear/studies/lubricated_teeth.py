@@ -78,6 +78,9 @@ def reduction_over(states: Sequence[State]) -> ReduceTeeth:
     """
 
     def reduce_contact(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> LubricatedTeeth:
+        """Return a pair's contact at all points and reduced to few, from table `ltca` and arrays
+        `pressure`.
+        """
         contacts = contacts_of(ltca, pressure, section)
         conditions = [
             _condition(lubrication_of(lubrication, section), speed_rpm, (GOLDEN * number) % 1.0)

@@ -332,11 +332,17 @@ def judge(
         speed: float,
         loads: FlankLoads,
     ) -> dict[str, float]:
+        """Return the friction quantities of a machine by column, given the loads of its flanks (N) and
+        its speed (rpm).
+        """
         section = parse(LubricationSection, lubrication, label)
         pair = teeth.pair(section, question.every_place)
         return friction_quantities(lumped_machine, speed, loads, pair, limits_of(section))
 
     def assemble(values: Values) -> tuple[PairExcitation, Machine]:
+        """Build the machine of some config values, and return the excitation by its tooth pair and the
+        machine.
+        """
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
         parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
@@ -352,6 +358,9 @@ def judge(
 
     @cache
     def guide() -> Guide | None:
+        """Return the orbit of the nominal machine as first guess; None at rest, or where it cannot be
+        built.
+        """
         if nominal is None or not question.dynamic:
             return None
         try:
@@ -362,6 +371,7 @@ def judge(
 
     @keys_named()
     def judge_machine(values: Mapping[str, Any]) -> dict[str, float]:
+        """Return all quantities of the machine that config values describe, by column."""
         mesh, lumped_machine = assemble(values)
         speed = values["dynamics"]["speed_rpm"]
         quantities, loads = ask(lumped_machine, speed, guide())

@@ -149,8 +149,8 @@ def sobol_indices(
 def _indices(blocks: Array) -> Array:
     """Return first-order and total Sobol indices (2, causes) from whole blocks (blocks, causes + 2).
 
-    A block holds the results at A, at B, and at A with each cause from B. Estimated is one resample at a
-    time, to save memory.
+    A block holds the results at A, at B, and at A with each cause from B. The bootstrap calls it resample
+    by resample, to save memory.
     """
     functions = {"f_A": blocks[None, :, 0], "f_B": blocks[None, :, 1], "f_AB": blocks[:, 2:].T[:, None, :]}
     estimate = scipy.stats.sobol_indices(func=functions, n=len(blocks))
@@ -211,6 +211,7 @@ def loosest(
     results_by_scale: dict[float, tuple[Estimate, int]] = {}
 
     def holds(scale: float) -> bool:
+        """Evaluate the samples at a scale, keep the percentile, and tell whether it is at most the limit."""
         values = sample_results(scale)
         is_failed = np.isnan(values)
         results_by_scale[scale] = percentile(np.where(is_failed, np.inf, values), level), int(is_failed.sum())

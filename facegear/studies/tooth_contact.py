@@ -171,6 +171,9 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
+        """Solve the contact of the pair whose section tooth_pair is given as JSON text, a key for the
+        cache.
+        """
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
         backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
@@ -238,6 +241,9 @@ def _bodies(
     cache_by_nodes = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
 
     def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
+        """Return the compliance of pinion and gear of a pair, and the root stress by body, from the cache
+        or solved.
+        """
         key = _nodes(values)
         if key not in cache_by_nodes:
             setup = contact_setup(section, mesh, contact)
