@@ -19,7 +19,8 @@ MIN_CURVE_POINTS = 3
 def expand_cases(config: Config) -> dict[str, dict[str, Any]]:
     """Expand a config into its own case and one case for every point of every study.
 
-    What follows from other keys is filled in. A study's case has the id `<case>/studies/<study>/<point>`.
+    What follows from other keys is filled in. The config's own case has the id `config.case`, a study's
+    case `<case>/studies/<study>/<point>`; key `case` of the values holds it.
 
     Parameters
     ----------
@@ -52,9 +53,9 @@ def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], source: 
     Parameters
     ----------
     base : Mapping[str, Any]
-        Plain values of a whole config.
+        Plain values of a whole config, as `Config.model_dump` gives them.
     changes : Mapping[str, Any]
-        New values by dotted key.
+        New values by dotted key, such as `transmission.damping.mass_per_s`.
     source : str
         What the error names as the origin of the changes.
 
@@ -67,14 +68,16 @@ def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], source: 
 
 
 def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Config:
-    """Change dotted keys of a config; studies and reproduction are left out.
+    """Change dotted keys of a config and validate the result; studies and reproduction are left out.
+
+    A new file of a stiffness curve or of measured flanks replaces what was read from the old one.
 
     Parameters
     ----------
     base : Mapping[str, Any]
-        Plain values of a whole config.
+        Plain values of a whole config, as `Config.model_dump` gives them.
     changes : Mapping[str, Any]
-        New values by dotted key.
+        New values by dotted key; a section must come before keys inside it.
     source : str
         What the error names as the origin of the changes.
 
@@ -112,7 +115,7 @@ def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], source: 
 
 
 def study_points(study: Study) -> dict[str, StudyPoint]:
-    """Return the points of a study: the product of its axes.
+    """Return the points of a study: all combinations of the points of its axes.
 
     Parameters
     ----------
@@ -122,7 +125,8 @@ def study_points(study: Study) -> dict[str, StudyPoint]:
     Returns
     -------
     dict[str, StudyPoint]
-        Label and keys of each point by the name of its folder.
+        Label and new values by dotted key of each point, by the name of its folder: the labels of the
+        combined points as words, joined by two underscores.
 
     Raises
     ------
@@ -149,8 +153,8 @@ def study_points(study: Study) -> dict[str, StudyPoint]:
 class NumberedStudy:
     """A study with an axis of numbers.
 
-    `key` is the dotted key that the numbers belong to, `label` the label of the axis. `points` holds for each
-    point, by its folder name, its number and the label of its point on the other axis.
+    `key` is the dotted key that the numbers belong to, `label` the label of the axis. `points` holds for
+    each point, by its folder name, its number and the label of its point on the other axis.
     """
 
     key: str
@@ -170,7 +174,8 @@ def find_numeric_axis(study: Study) -> NumberedStudy | None:
     Returns
     -------
     NumberedStudy or None
-        The study with that axis; None if there is none.
+        Key and label of that axis, and the number and the label on the other axes of every point of the
+        study; None if there is no such axis.
     """
     for number, axis in enumerate(study.axes):
         numbers = axis.numbers()
@@ -189,7 +194,10 @@ def find_numeric_axis(study: Study) -> NumberedStudy | None:
 
 
 def _other_axis_label(study: Study, left_out: int, combination: Sequence[int]) -> str:
-    """Label of a point on the axis beside the one that is left out."""
+    """Return the label of a point of a study on all its axes but one, joined by commas.
+
+    `combination` has the index of its point on each axis, `left_out` the index of the axis left out.
+    """
     parts = [
         f"{axis.label} = {axis.study_points()[point].label}" if axis.key else axis.study_points()[point].label
         for position, (axis, point) in enumerate(zip(study.axes, combination, strict=True))
@@ -199,7 +207,7 @@ def _other_axis_label(study: Study, left_out: int, combination: Sequence[int]) -
 
 
 def set_key(values: dict[str, Any], key: str, value: Any) -> None:
-    """Set a dotted key in nested values, in place.
+    """Set a dotted key that exists in nested values, in place.
 
     Parameters
     ----------
@@ -213,7 +221,7 @@ def set_key(values: dict[str, Any], key: str, value: Any) -> None:
     Raises
     ------
     ConfigError
-        If the key does not stand in `values`.
+        If the key does not exist in `values`, or is one of FIXED_KEYS.
     """
     *sections, last = key.split(".")
     inside: Any = values
@@ -227,9 +235,11 @@ FIXED_KEYS = ("case", "studies", "reproduction")
 
 
 def _position(inside: Any, part: str, key: str, value: Any, before: Sequence[str]) -> str | int:
-    """Return the key or list position of one part of a dotted key.
+    """Return the key, or list index, that one part of a dotted key stands for.
 
-    `before` holds the parts in front of it. Raises ConfigError if the part does not exist.
+    `inside` is the mapping or list that it is looked up in, `part` the part, and `before` the parts in
+    front of it. `key` and `value` are the whole key and its new value, for the error. Raises ConfigError
+    if the part does not exist there.
     """
     if isinstance(inside, dict) and part in inside and (before or part not in FIXED_KEYS):
         return part
@@ -259,6 +269,7 @@ def folder_name(label: str) -> str:
     Returns
     -------
     str
-        Lower-case words joined by underscores.
+        Lower-case letters and digits, all else replaced by underscores, a dot by `p`; `point` where
+        nothing is left.
     """
     return re.sub(r"[^a-z0-9]+", "_", label.lower().replace(".", "p")).strip("_") or "point"

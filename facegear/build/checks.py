@@ -49,7 +49,7 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
-    """Fill in the backlash of the teeth as assembled where section `transmission` gives none.
+    """Return section `transmission` with the backlash of the teeth as assembled where it gives none.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
     Returns
     -------
     Transmission
-        The section with a backlash.
+        The section itself if it has `backlash_um`, else a copy with it, um.
 
     Raises
     ------
@@ -74,7 +74,9 @@ def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
 
 
 def check_pitch(stiffness: MeshStiffness, teeth: int) -> None:
-    """Require that a stiffness over the pinion's angle covers one pitch of the pinion.
+    """Require that a stiffness curve read over the pinion's angle covers one pitch of the pinion.
+
+    A stiffness that is given in another way always passes.
 
     Parameters
     ----------
@@ -129,7 +131,7 @@ def check_strain(pair: ToothPair, contact: Contact) -> None:
     Raises
     ------
     ConfigError
-        If the largest torque exceeds `tooth_limit`.
+        If the largest torque exceeds `tooth_limit` with the smaller Young's modulus of both bodies.
     """
     largest = tooth_limit(pair_design(pair), min(material.young_modulus for material in materials(pair)))
     if contact.torques_n_m[-1] > largest:
@@ -139,7 +141,9 @@ def check_strain(pair: ToothPair, contact: Contact) -> None:
 
 
 def tooth_limit(design: PairDesign, modulus: float) -> float:
-    """Return the torque at which a tooth leaves what a linear elastic model can say.
+    """Return the torque beyond which a tooth is no longer linearly elastic: STRAIN E m b r.
+
+    E is Young's modulus, m the module, b the face width of the gear, r the pitch radius of the pinion.
 
     Parameters
     ----------
@@ -160,7 +164,7 @@ def tooth_limit(design: PairDesign, modulus: float) -> float:
 def check_machine_strain(pair: ToothPair, section: Transmission) -> None:
     """Require that no torque on a pinion exceeds what a steel tooth of this module can bear.
 
-    The limit takes a face width of WIDEST modules.
+    The limit is that of `tooth_limit` for steel and a face of WIDEST modules, as bodies may be missing.
 
     Parameters
     ----------
@@ -188,7 +192,11 @@ def check_machine_strain(pair: ToothPair, section: Transmission) -> None:
 
 
 def check_positions(pair: ToothPair, section: Transmission) -> None:
-    """Require that pinions stand at angles within a turn, far enough apart for their bodies.
+    """Require that pinions stand at angles within a turn, far enough apart that their bodies do not
+    overlap.
+
+    Neighbours must be 2 atan(r / R) apart. r is the tip radius of a pinion and R the gear radius at which
+    its body begins; both are pitch radii where the config has no bodies.
 
     Parameters
     ----------
@@ -280,7 +288,7 @@ def check_pitch_once(pair: ToothPair, section: Transmission) -> None:
 
 
 def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
-    """Compute the backlash of the pair as assembled.
+    """Compute the normal backlash of the pair as assembled, with its assembly errors and modified flanks.
 
     Parameters
     ----------
@@ -292,7 +300,7 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     Returns
     -------
     float
-        Normal backlash, um.
+        Normal backlash, um, not below 0.
 
     Raises
     ------
@@ -334,9 +342,9 @@ def memory_here() -> float:
 
 
 def _pinion_body(pair: ToothPair) -> tuple[float, float]:
-    """Radius (m) of the pinions and the gear radius (m) where their bodies begin.
+    """Return the tip radius of the pinions and the gear radius at which their bodies begin, m.
 
-    Without bodies in the config, what is certain: the pitch radii of pinion and gear.
+    Without bodies in the config these are what is certain: the pitch radii of pinion and gear.
     """
     if pair.pinion is None:
         half = 0.5e-3 * pair.module_mm
@@ -358,7 +366,7 @@ REST = "the contact of samples and designs is that of the pair as assembled"
 
 
 def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness) -> None:
-    """Require a pair and a stiffness with a contact over pose, where the operating pose is asked for.
+    """Require that contact over pose can be computed, where the operating pose is asked for.
 
     Parameters
     ----------
@@ -372,7 +380,8 @@ def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness
     Raises
     ------
     ConfigError
-        For given harmonics, or flanks that touch along lines.
+        For a stiffness given as harmonics, or a shaper with no more teeth than the pinion, whose flanks
+        touch along lines.
     """
     if machine.operating_pose == "none":
         return
@@ -385,7 +394,9 @@ def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness
 
 
 def check_posed_variants(machine: Transmission, tolerances: Tolerances | None, search: Search | None) -> None:
-    """Require that one surface over pose describes the tooth pairs of all samples and designs.
+    """Require that samples and designs leave the tooth pair alone where an operating pose is asked for.
+
+    Contact over pose is computed once, for the pair of the config, and serves all of them.
 
     Parameters
     ----------

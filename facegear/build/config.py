@@ -90,7 +90,7 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
-        """Check what concerns several sections; all mistakes are reported together."""
+        """Run all checks that concern several sections; all mistakes are reported together."""
         require_all(
             self._check_branches,
             self._check_law,
@@ -115,7 +115,11 @@ class Config(Section):
             raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, requirement)
 
     def _check_law(self) -> None:
-        """Refuse a load-dependent mesh law with printed kinematics."""
+        """Refuse a load-dependent mesh law where something else takes a constant stiffness.
+
+        That is printed kinematics, modes with the average stiffness, a search, and samples with other
+        teeth or with contact of their own.
+        """
         if self.mesh_stiffness.mesh_law == "constant_load":
             return
         if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
@@ -131,13 +135,17 @@ class Config(Section):
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", requirement)
 
     def _check_poses(self) -> None:
-        """Refuse contact in the loaded position where the machine, or varied quantities, do not allow it."""
+        """Refuse contact in the loaded position where the stiffness, the flanks, samples or designs do
+        not allow it.
+        """
         if self.transmission is not None:
             check_poses(self.transmission, self.tooth_pair, self.mesh_stiffness)
             check_posed_variants(self.transmission, self.tolerances, self.search)
 
     def _check_branches(self) -> None:
-        """Refuse branches over parameters or speeds that the machine does not have."""
+        """Refuse branches whose speeds leave out the operating speed, and bearing stiffness as a
+        parameter of loci where turning masses or elastic gears have springs that it would scale, too.
+        """
         speed, section = self.dynamics.speed_rpm, self.branches
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
@@ -157,7 +165,12 @@ class Config(Section):
             raise ConfigError("reproduction", self.reproduction, "the name of a file that exists")
 
     def _check_pair(self) -> None:
-        """Check that the tooth pair can be built and is given where a section needs it."""
+        """Refuse a pair that jams, that lacks bodies some section needs, or whose contact cannot be
+        computed.
+
+        The last asks for torques within linear elasticity, elements that resolve contact and fillets, and
+        memory.
+        """
         pair = self.tooth_pair
         if pair.pinion is not None:
             geometric_backlash(pair)
@@ -182,7 +195,9 @@ class Config(Section):
 
     @property
     def mesh_used(self) -> Mesh:
-        """The mesh with fillets as root stress needs them, unless it says itself what they are."""
+        """Section `mesh` with `thin_fillet` filled in: as given, else true where root stress is asked
+        for.
+        """
         thin_fillet = self.mesh.thin_fillet
         return self.mesh.model_copy(
             update={"thin_fillet": self._root_stress if thin_fillet is None else thin_fillet}
@@ -190,9 +205,10 @@ class Config(Section):
 
     @property
     def contact_used(self) -> Contact:
-        """The contact analysis with the duty cycle's smallest and largest torque where they lie outside.
+        """Section `contact` with the duty cycle's torques outside the range of its own torques added, N
+        m.
 
-        One so small that the mesh cannot resolve its contact is left out.
+        Torques so small that the mesh cannot resolve their contact are not added.
         """
         torques = self.contact.torques_n_m
         if self.strength is None or self.tooth_pair.pinion is None:
@@ -213,7 +229,9 @@ class Config(Section):
         return self.contact.root_stress or self.strength is not None
 
     def _check_strength(self) -> None:
-        """Refuse material cards whose elasticity is not that of the bodies."""
+        """Refuse material cards with other elasticity than the bodies, and elements that root stress
+        cannot use.
+        """
         if self.strength is None:
             return
         for body in ("pinion", "face_gear"):
@@ -229,7 +247,7 @@ class Config(Section):
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
     def _check_duty_speeds(self) -> None:
-        """Refuse speeds of the duty cycle beyond the sweep that gives the load factors."""
+        """Refuse duty speeds outside the speed sweep, where the sweep gives the load factors."""
         sweep = self.dynamics.sweep
         if self.strength is None or self.strength.load_factors != "machine":
             return
@@ -239,7 +257,7 @@ class Config(Section):
                 raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, requirement)
 
     def _check_sharing_map(self, machine: Transmission) -> None:
-        """Refuse a load-sharing map of a machine that has no shared loads to map."""
+        """Refuse a load-sharing map with printed kinematics or a single face gear, which splits no load."""
         if self.sharing_map is None:
             return
         if machine.mesh_kinematics == "printed":
@@ -251,7 +269,11 @@ class Config(Section):
             raise ConfigError("transmission.face_gears", list(machine.face_gears), both_gears)
 
     def _check_machine(self) -> None:
-        """Check the machine against the other sections, and what must be left out without a machine."""
+        """Check section `transmission` against the other sections.
+
+        Without a machine, refuse the sections that need one. With one, check its positions, torques,
+        bodies, backlash and transmission errors, and the tolerances and search that vary it.
+        """
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
             for key in ("sharing_map", "studies", "tolerances", "search", "reproduction"):
@@ -294,10 +316,10 @@ class Config(Section):
 def resolved_values(config: Config) -> dict[str, Any]:
     """Return the plain values of a config with what follows from other keys filled in.
 
-    That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, the
-    backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges need, and
-    how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every
-    pinion.
+    That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken,
+    the backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges
+    need, and how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's
+    once by every pinion.
 
     Parameters
     ----------
@@ -307,7 +329,7 @@ def resolved_values(config: Config) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Plain values under the keys of the config.
+        Plain nested values under the keys of the config, for stages; the config itself is unchanged.
     """
     values = config.model_dump(mode="json")
     has_given_factors = config.strength is not None and config.strength.load_factors == "given"

@@ -49,7 +49,7 @@ def limits_in_words(shaper_teeth: int, pinion_teeth: int, **pair_numbers: Any) -
     Returns
     -------
     str
-        Both radii (mm) and what limits them.
+        One line with the number of the shaper's teeth, both radii (mm) and what limits them.
 
     Raises
     ------
@@ -74,7 +74,10 @@ def face_limits(
     shaper_addendum_modules: float = 1.25,
     shaper_tip_rounding_modules: float = 0.0,
 ) -> FaceRange:
-    """Compute the radii between which the face of a face gear may lie.
+    """Compute the radii between which the face of a face gear may lie: no undercut inside, no pointed
+    tips outside.
+
+    The rack that cuts the pinion is taken with a sharp tip.
 
     Parameters
     ----------
@@ -183,17 +186,21 @@ class EarlyFindings:
 
 
 def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
-    """Interference, clearance and whether the fillets can be rated.
+    """Find what geometry alone says of a pair: jamming, interference, contact ratio, path of contact,
+    fillets.
+
+    Interference is a failure where the stiffness comes from contact, else a remark. A failure is also a
+    pair that the rating refuses.
 
     Parameters
     ----------
     values : mapping
-        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+        Plain values of a validated config, as `facegear.build.config.resolved_values` returns them.
 
     Returns
     -------
     EarlyFindings
-        Without lines for a pair without bodies.
+        Failures, remarks, and one line of facts; no lines for a pair without bodies.
     """
     if values["tooth_pair"]["pinion"] is None:
         return EarlyFindings((), (), ())
@@ -228,17 +235,19 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
 
 
 def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
-    """Meshes without load at rest, and torques outside those of the contact analysis.
+    """Find meshes without load at rest, and mesh torques outside those of the contact analysis.
+
+    Statics take a constant mesh stiffness, given or estimated, and no transmission error.
 
     Parameters
     ----------
     values : mapping
-        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+        Plain values of a validated config, as `facegear.build.config.resolved_values` returns them.
 
     Returns
     -------
     EarlyFindings
-        Without lines for a config without a machine.
+        Remarks only; no lines for a config without a machine.
     """
     if values["transmission"] is None:
         return EarlyFindings((), (), ())
@@ -261,7 +270,10 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
 
 
 def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
-    """Say in one line where the teeth interfere and what then cannot be computed."""
+    """Return one line that says where the teeth interfere, how deep, and what then cannot be computed.
+
+    `from_contact` says whether the mesh stiffness comes from contact.
+    """
     gap = analysis.interference
     assert gap is not None
     consequence = (
@@ -275,8 +287,10 @@ def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
 
 
 def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
-    """Return why the pair cannot be rated, and where the rating leaves the range of its standard,
-    as lines.
+    """Return failures and remarks about the rating of a pair, as two lists of lines.
+
+    A failure is the error by which the rating would end. A remark tells of a notch parameter q_s of the
+    pinion's fillet outside NOTCHES, the range of ISO 6336-3. Both are empty without section `strength`.
     """
     if values["strength"] is None:
         return [], []
@@ -299,7 +313,10 @@ def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], l
 
 
 def _stiffness(values: Mapping[str, Any]) -> float:
-    """Mean mesh stiffness, N/m: as given, or what a steel mesh of this face width has."""
+    """Return the mean mesh stiffness, N/m: as given, else that of a steel mesh of this face width.
+
+    Without bodies the face is taken as USUAL_FACE_MODULES modules wide.
+    """
     mean = values["mesh_stiffness"]["mean_n_per_m"]
     if mean is not None:
         return float(mean)
@@ -309,7 +326,12 @@ def _stiffness(values: Mapping[str, Any]) -> float:
 
 
 def _unsolved(values: Mapping[str, Any], loads: Mapping[str, float]) -> Iterator[str]:
-    """Yield lines on meshes whose load at rest, N m, lies outside the torques of the contact analysis."""
+    """Yield remarks on meshes whose torque at rest lies outside the torques of the contact analysis.
+
+    `loads` has the size of the torque on the pinion by mesh name, N m. One line is for the most loaded
+    mesh above the range. One, with a load-dependent law, is for the least loaded below it, of those above
+    LIGHTEST.
+    """
     if not loads:
         return
     low, high = values["contact"]["torques_n_m"][0], values["contact"]["torques_n_m"][-1]

@@ -37,26 +37,26 @@ ON_LINE = 1e-9
 
 
 def body_of(section: Transmission, side: str) -> BodySection | None:
-    """Return the body of a face gear.
+    """Return section `body` of one face gear: its own where it has one, else that of all face gears.
 
     Parameters
     ----------
     section : Transmission
         Section `transmission` of the config.
     side : str
-        `lower` or `upper`.
+        Which face gear: `lower` or `upper`.
 
     Returns
     -------
     BodySection or None
-        Section of the body; None for a rigid gear.
+        Dimensions of hub, web and rim as the config gives them; None for a rigid gear.
     """
     single_gear = section.single_gears.get(side)
     return (single_gear.body if single_gear is not None else None) or section.face_gear.body
 
 
 def elastic_gears(section: Transmission) -> dict[str, BodySection]:
-    """Return the bodies of the face gears that bend.
+    """Return the sections `body` of all face gears that bend; rigid gears are left out.
 
     Parameters
     ----------
@@ -66,14 +66,14 @@ def elastic_gears(section: Transmission) -> dict[str, BodySection]:
     Returns
     -------
     dict[str, BodySection]
-        Sections of the bodies by side.
+        Section `body` by side, `lower` or `upper`; empty where all gears are rigid.
     """
     bodies = {side: body_of(section, side) for side in section.face_gears}
     return {side: body for side, body in bodies.items() if body is not None}
 
 
 def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
-    """Whether a face gear bends.
+    """Whether any face gear bends, told from plain values.
 
     Parameters
     ----------
@@ -94,6 +94,9 @@ def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
 def pitch_height(teeth: ToothPair) -> float:
     """Height of the pitch plane over the plane on which the contact analysis clamps the teeth.
 
+    That is rim thickness plus shaper addendum. The plane, the underside of the contact analysis's rim,
+    has height 0 in sections of gear bodies.
+
     Parameters
     ----------
     teeth : ToothPair
@@ -102,26 +105,28 @@ def pitch_height(teeth: ToothPair) -> float:
     Returns
     -------
     float
-        Height, m.
+        Height along the gear's axis towards the teeth, m.
     """
     assert teeth.face_gear is not None and teeth.shaper is not None
     return 1e-3 * (teeth.face_gear.rim_thickness_mm + teeth.module_mm * teeth.shaper.addendum_modules)
 
 
 def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
-    """Return the patch of the rim on which a mesh presses.
+    """Return the patch of the rim over which the force of one mesh is spread.
+
+    The patch lies at the height of the pitch plane. It is `contact_width_pitches` tooth pitches wide.
 
     Parameters
     ----------
     section : BodySection
-        Section of the body.
+        Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
 
     Returns
     -------
     Patch
-        Its height (m) and half its width (rad).
+        Height over height 0 of the section (m), and half its width round the axis (rad).
     """
     pitch = 2.0 * np.pi / teeth.face_gear_teeth
     return Patch(pitch_height(teeth), 0.5 * section.contact_width_pitches * pitch)
@@ -130,17 +135,21 @@ def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
 def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
     """Return the cross-section of a body in SI units.
 
+    The material is the section's own, else that of the pair's face gear. Teeth are a layer on the rim.
+    With `teeth: fitted` its density and taper are those of the real teeth, but not yet its stiffness.
+
     Parameters
     ----------
     section : BodySection
-        Section of the body.
+        Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
 
     Returns
     -------
     shapes.Section
-        Corners (m), material and tooth layer of the cross-section.
+        Corners as distance from the axis and height (m), held edges, radii of the teeth, material and
+        tooth layer; no layer where `body.teeth` leaves teeth out.
 
     Raises
     ------
@@ -166,17 +175,20 @@ def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
 def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
     """Return the cross-section of a body, as `body_shape`, with its teeth as stiff as `body.teeth` says.
 
+    For `fitted` the hoop and shear stiffness of the layer are fitted to finite elements of the teeth,
+    which takes time. Else the result is that of `body_shape`.
+
     Parameters
     ----------
     section : BodySection
-        Section of the body.
+        Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
 
     Returns
     -------
     shapes.Section
-        The cross-section in SI units.
+        Cross-section in SI units, for `facegear.parts.gear_body`.
 
     Raises
     ------
@@ -192,7 +204,13 @@ def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
 
 
 def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:
-    """Return the corners (n, 2) of a section in m, anticlockwise, and for each edge whether it is held."""
+    """Return the corners (n, 2) of a body's section and whether the edge after each corner is held (n,).
+
+    A corner is distance from the axis and height, m; corners run anticlockwise. They are those of the
+    config, else those of a wheel of hub, web and rim, or of a plain ring where hub or web is not given.
+    Held edges are those that the config names, else the bore. `inner` and `outer` are the radii of the
+    teeth and `top` the height of the edge that they stand on, m.
+    """
     if section.corners_mm:
         config_corners = 1e-3 * np.array(section.corners_mm)
         shapes.require_simple(config_corners)
@@ -228,7 +246,7 @@ def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tu
 
 
 def bore(corners: Array) -> tuple[bool, ...]:
-    """Find the edges at the smallest distance from the axis.
+    """Find the edges of the bore, with both ends at the smallest distance from the axis: held by default.
 
     Parameters
     ----------
@@ -238,14 +256,14 @@ def bore(corners: Array) -> tuple[bool, ...]:
     Returns
     -------
     tuple[bool, ...]
-        For each edge whether it belongs to the bore.
+        For the edge from each corner to the next, whether it belongs to the bore.
     """
     inside = corners[:, 0] < corners[:, 0].min() + ON_LINE
     return tuple((inside & np.roll(inside, -1)).tolist())
 
 
 def check_bodies(teeth: ToothPair, section: Transmission) -> None:
-    """Require that the bodies of a machine can exist and fit its teeth and masses.
+    """Require that elastic bodies of face gears can exist and fit the teeth, masses and inertias.
 
     Parameters
     ----------
@@ -257,7 +275,7 @@ def check_bodies(teeth: ToothPair, section: Transmission) -> None:
     Raises
     ------
     ConfigError
-        For the first body that does not.
+        For the first body that does not, and for a hub's tilt where no body bends.
     """
     _refuse_hubs_alone(section)
     for side in section.face_gears:
@@ -270,7 +288,7 @@ def check_bodies(teeth: ToothPair, section: Transmission) -> None:
 
 
 def _refuse_hubs_alone(section: Transmission) -> None:
-    """Refuse the tilt of a hub where no web bends."""
+    """Raise ConfigError where `hub_tilt` is given for a face gear without a body that bends."""
     single = section.single_gears.items()
     rigid = [
         f"single_gears.{side}"
@@ -285,7 +303,11 @@ def _refuse_hubs_alone(section: Transmission) -> None:
 
 
 def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Transmission) -> None:
-    """Refuse the tilt of a hub that has less inertia about a diameter than the section of its gear alone."""
+    """Refuse a tilting hub with less inertia about a diameter than the section of its gear has.
+
+    `hub_tilt` gives the inertia of the whole gear about a diameter through its tilt centre. `shape` is
+    the section of the body on the given side.
+    """
     single_gear = section.single_gears.get(side)
     alone = single_gear is not None and single_gear.hub_tilt is not None
     tilt = (
@@ -304,7 +326,12 @@ def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Tran
 
 
 def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
-    """Refuse an elastic face gear that does not fit the teeth or the kinematics."""
+    """Raise ConfigError for the elastic body of one face gear that does not fit teeth or machine.
+
+    Refused are printed kinematics, a pair without bodies, a tilt beside the body, a section that does not
+    carry the teeth or cannot be meshed, and a mass or inertia below that of the section. `key` is the
+    section that holds the body.
+    """
     if section.mesh_kinematics == "printed":
         raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
     if teeth.face_gear is None:
@@ -336,7 +363,10 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
-    """Raise ConfigError with the key of the section's dimension that an InvalidInput names."""
+    """Raise ConfigError for an InvalidInput about a body's section, under the key that its quantity has.
+
+    `key` is the section `body`, such as `transmission.face_gear.body`.
+    """
     name, value, requirement = KEYS[error.quantity], error.value, error.requirement.replace("`", "")
     if error.quantity == THINNEST:
         name, value = _thinnest_key(body)
@@ -347,7 +377,7 @@ def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
 
 
 def _thinnest_key(body: BodySection) -> tuple[str, object]:
-    """Return the key, with its value, of the dimension that makes the thinnest wall."""
+    """Return key and value, inside section `body`, of the dimension that makes the thinnest wall."""
     if body.web is not None:
         keys = ("hub_thickness_mm", "rim_thickness_mm")
         value, thinner = min((getattr(body.web, key), key) for key in keys)
@@ -363,12 +393,13 @@ def require_teeth_on_rim(shape: shapes.Section, top: float) -> None:
     shape : shapes.Section
         Cross-section in SI units.
     top : float
-        Height of that edge, m.
+        Height of the edge that the teeth stand on: the thickness of the rim, m.
 
     Raises
     ------
     InvalidInput
-        If no edge does, or there is a gap below the teeth.
+        If no edge at this height covers the radii of the teeth, or the rim below them has a gap down to
+        height 0.
     """
     inner, outer = shape.teeth
     words = f"such that it has an edge at height {1e3 * top:g} mm from {1e3 * inner:g} to {1e3 * outer:g} mm"
@@ -385,7 +416,7 @@ def require_teeth_on_rim(shape: shapes.Section, top: float) -> None:
 
 
 def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, front: float) -> bool:
-    """Whether an edge runs through the inside of a rectangle.
+    """Whether an edge runs through the inside of a rectangle; its border, within ON_LINE, does not count.
 
     Parameters
     ----------
@@ -403,7 +434,7 @@ def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, fro
     Returns
     -------
     bool
-        True if one does.
+        True if at least one edge does.
     """
     low, high = np.array([inner, back]) + ON_LINE, np.array([outer, front]) - ON_LINE
     first, way = edges[:, 0], edges[:, 1] - edges[:, 0]

@@ -18,18 +18,22 @@ POINT_MM, NORMAL = 0.05, 0.02
 
 
 def check_flanks(section: FlanksSection, key: str, face: Face, teeth: int) -> None:
-    """Refuse grids that do not belong to this gear: its teeth, places, nominal points and normals.
+    """Raise ConfigError for grids of deviations that do not belong to this gear.
+
+    Checked are tooth numbers, size of the deviations, grid places, nominal points and normals where the
+    file has them, and that a flank measured tooth by tooth has a grid for every tooth.
 
     Parameters
     ----------
     section : FlanksSection
-        Section `flanks` of a body.
+        Section `flanks` of the pinion or face gear: grids, amplitude, what becomes of pitch and
+        thickness.
     key : str
-        Key of the section, for errors.
+        Dotted key of the section, for the error.
     face : Face
-        Nominal flank.
+        Nominal flank of this body; its `face` and `profile` bound the grid coordinates, m.
     teeth : int
-        Number of teeth.
+        Number of teeth of this body.
     """
     for grid in section.grids:
         flank_name = f"{key}.grids: {grid.flank} flank of tooth {grid.tooth or 'all'}"
@@ -50,7 +54,10 @@ def check_flanks(section: FlanksSection, key: str, face: Face, teeth: int) -> No
 
 
 def _check_places(grid: GridSection, flank_name: str, face: Face) -> None:
-    """Refuse grid lines of measured deviations that lie outside the flank."""
+    """Raise ConfigError for grid lines that leave the flank or cover less than MIN_COVERAGE of it.
+
+    Checked are `face_mm` and `profile_mm`; `flank_name` says in the error which flank and tooth.
+    """
     for name, (low, high) in (("face_mm", face.face), ("profile_mm", face.profile)):
         line, low, high = getattr(grid, name), 1e3 * low, 1e3 * high
         slack = 1e-3 * (high - low)
@@ -65,7 +72,12 @@ def _check_places(grid: GridSection, flank_name: str, face: Face) -> None:
 
 
 def _check_nominal(grid: GridSection, flank_name: str, face: Face) -> None:
-    """Refuse a file whose nominal points or normals are not those of this flank."""
+    """Raise ConfigError where the nominal points or outward normals of a file are not those of this
+    flank.
+
+    Points may be off by POINT_MM in each coordinate, the cosine between normals by NORMAL. The error
+    tells of a file that is mirrored, or whose normals point into the material.
+    """
     file_values, lines = (
         np.array(grid.nominal),
         (1e-3 * np.array(line) for line in (grid.face_mm, grid.profile_mm)),
@@ -92,23 +104,28 @@ def _check_nominal(grid: GridSection, flank_name: str, face: Face) -> None:
 
 
 def fields_of(section: FlanksSection, side: Side, face: Face, teeth: int) -> Array | None:
-    """Return the deviations of one flank of all teeth.
+    """Return the deviations of one flank of every tooth on its grid, times the amplitude of the section.
+
+    A tooth without a grid of its own has that of tooth `all`. Where pitch and thickness are left out, the
+    value at the middle of the flank is subtracted.
 
     Parameters
     ----------
     section : FlanksSection
-        Section `flanks` of a body.
+        Section `flanks` of the pinion or face gear: grids, amplitude, what becomes of pitch and
+        thickness.
     side : Side
-        `right` or `left`.
+        Flank of the teeth: `right` or `left`.
     face : Face
-        Nominal flank.
+        Nominal flank of this body; its `face` and `profile` bound the grid coordinates, m.
     teeth : int
-        Number of teeth.
+        Number of teeth of this body.
 
     Returns
     -------
     (teeth, n_face, n_profile) array or None
-        Deviations along the outward normal, m; None where the flank is as designed.
+        Deviations along the outward normal, positive where material is added, m; None where the flank has
+        no grid and is as designed.
     """
     grids = {grid.tooth: grid for grid in section.grids if grid.flank == side}
     if not grids:
@@ -119,7 +136,10 @@ def fields_of(section: FlanksSection, side: Side, face: Face, teeth: int) -> Arr
 
 
 def _values(section: FlanksSection, grid: GridSection, face: Face) -> Array:
-    """Deviations (n_face, n_profile) m of one grid."""
+    """Return the deviations (n_face, n_profile) of one grid in m, times the amplitude of the section.
+
+    Where pitch and thickness are left out, the deviation at the middle of the flank is subtracted.
+    """
     values = 1e-6 * section.amplitude * np.array(grid.deviation_um)
     if section.pitch_and_thickness == "left_out":
         values = values - deviation(deviation_grid(grid, values), *face.middle)
@@ -127,57 +147,59 @@ def _values(section: FlanksSection, grid: GridSection, face: Face) -> Array:
 
 
 def deviation_grid(grid: GridSection, values: Array) -> DeviationGrid:
-    """Return values at the places of a grid, in SI units.
+    """Put deviations on the places of a config's grid, in SI units.
 
     Parameters
     ----------
     grid : GridSection
-        Grid of the config.
+        Grid of the config, of which only the places `face_mm` and `profile_mm` are taken.
     values : (n_face, n_profile) array
-        Deviations, m.
+        Deviations at these places, m.
 
     Returns
     -------
     DeviationGrid
-        The grid with these values.
+        Places and deviations in m.
     """
     face, profile = (tuple(1e-3 * at for at in line) for line in (grid.face_mm, grid.profile_mm))
     return DeviationGrid(face, profile, tuple(map(tuple, values.tolist())))
 
 
 def common_flanks(section: FlanksSection, face: Face, teeth: int) -> Flanks:
-    """Return the mean deviations of all teeth.
+    """Return the mean deviations of all teeth, for both flanks: the flanks of the design.
 
     Parameters
     ----------
     section : FlanksSection
-        Section `flanks` of a body.
+        Section `flanks` of the pinion or face gear: grids, amplitude, what becomes of pitch and
+        thickness.
     face : Face
-        Nominal flank.
+        Nominal flank of this body; its `face` and `profile` bound the grid coordinates, m.
     teeth : int
-        Number of teeth.
+        Number of teeth of this body.
 
     Returns
     -------
     Flanks
-        Mean deviations of both flanks, m.
+        Mean over the teeth of `right` and `left` flank, m; None for a flank as designed.
     """
     return Flanks(**{side: common_grid(section, side, face, teeth) for side in SIDES})
 
 
 def common_grid(section: FlanksSection, side: Side, face: Face, teeth: int) -> DeviationGrid | None:
-    """Return the mean deviations of one flank of all teeth.
+    """Return the deviations of one flank as a mean over all teeth, place by place.
 
     Parameters
     ----------
     section : FlanksSection
-        Section `flanks` of a body.
+        Section `flanks` of the pinion or face gear: grids, amplitude, what becomes of pitch and
+        thickness.
     side : Side
-        `right` or `left`.
+        Flank of the teeth: `right` or `left`.
     face : Face
-        Nominal flank.
+        Nominal flank of this body; its `face` and `profile` bound the grid coordinates, m.
     teeth : int
-        Number of teeth.
+        Number of teeth of this body.
 
     Returns
     -------
@@ -195,23 +217,26 @@ def common_grid(section: FlanksSection, side: Side, face: Face, teeth: int) -> D
 
 
 def differences(section: FlanksSection, side: Side, face: Face, teeth: int) -> Teeth | None:
-    """Return the difference of each tooth from the mean of one flank of all teeth.
+    """Return what the deviations of each tooth have beyond the mean of all teeth, `common_grid`, for one
+    flank.
 
     Parameters
     ----------
     section : FlanksSection
-        Section `flanks` of a body.
+        Section `flanks` of the pinion or face gear: grids, amplitude, what becomes of pitch and
+        thickness.
     side : Side
-        `right` or `left`.
+        Flank of the teeth: `right` or `left`.
     face : Face
-        Nominal flank.
+        Nominal flank of this body; its `face` and `profile` bound the grid coordinates, m.
     teeth : int
-        Number of teeth.
+        Number of teeth of this body.
 
     Returns
     -------
     Teeth or None
-        Differences (m) tooth by tooth; equal ones are one object. None where all teeth are alike.
+        One grid of differences (m) for each tooth, in their order; equal ones are the same object. None
+        where one grid or none serves all teeth.
     """
     grids = [grid for grid in section.grids if grid.flank == side]
     fields = fields_of(section, side, face, teeth)

@@ -38,14 +38,15 @@ def load_config(
     Parameters
     ----------
     paths : str or Path or Sequence[str | Path]
-        The file, or several of which a later one goes before an earlier one.
+        The file, or several; values of a later one replace those of an earlier one key by key, lists
+        whole.
     overrides : Mapping[str, Any] or None
-        Values that go before those of all files.
+        Nested values that replace those of all files; numbers written as text become numbers.
 
     Returns
     -------
     Config
-        The config.
+        The validated config.
 
     Raises
     ------
@@ -61,19 +62,19 @@ def load_config(
 
 
 def config_of(values: Mapping[str, Any]) -> Config:
-    """Validate a config that stands in memory.
+    """Validate a config given as nested values in memory.
 
     Names of files in it count from the working directory. Its key `extends` names a config file anywhere.
 
     Parameters
     ----------
     values : Mapping[str, Any]
-        Values of the config.
+        Nested values by key, NumPy numbers and arrays included.
 
     Returns
     -------
     Config
-        The config.
+        The validated config.
 
     Raises
     ------
@@ -88,17 +89,17 @@ def config_of(values: Mapping[str, Any]) -> Config:
 
 
 def plain(value: Any) -> Any:
-    """Convert NumPy numbers and arrays, tuples and other iterables to values that YAML can hold.
+    """Convert NumPy numbers and arrays, paths, tuples and other iterables to values that YAML can hold.
 
     Parameters
     ----------
     value : Any
-        Any value.
+        Any value; mappings and iterables are converted with all that they hold.
 
     Returns
     -------
     Any
-        A copy in plain values.
+        Numbers, texts, lists and dicts; a value of another type is returned as it is.
     """
     if hasattr(value, "tolist"):
         return value.tolist()
@@ -114,19 +115,22 @@ def plain(value: Any) -> Any:
 
 
 def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
-    """Read a config file over the file that its key `extends` names, in the same folder.
+    """Read a config file, laid over the file in the same folder that its key `extends` names, and so on.
+
+    Names of files in the values are made relative to the working directory. Nothing else is validated.
 
     Parameters
     ----------
     path : str or Path
         The config file.
     below : Sequence[Path]
-        Files that extend this one, for the check against circles.
+        Files that extend this one, which it must not extend in turn; empty for the file that a user
+        names.
 
     Returns
     -------
     dict[str, Any]
-        Plain values of both.
+        Plain values of all layers merged, without `extends`.
 
     Raises
     ------
@@ -149,7 +153,7 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
 
 
 def base_path(path: str | Path) -> Path | None:
-    """Return the config file that a config file names under `extends`.
+    """Return the path of the config file that a config file names under `extends`; it need not exist.
 
     Parameters
     ----------
@@ -184,7 +188,11 @@ def relative_to_cwd(name: str, folder: Path) -> str:
 
 
 def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Make file names in a config relative to the current folder, those of its studies included."""
+    """Make all file names of a config, its studies' included, relative to the current folder, in place.
+
+    Names count from `folder`, that of the config file; FILE_KEYS lists the keys. Returns the same
+    mapping.
+    """
     for *sections, key in FILE_KEYS:
         inside: Any = values
         for section in sections:
@@ -198,13 +206,18 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _locate(inside: Any, key: str, folder: Path) -> None:
-    """Make one file name of a section relative to the current folder, if the section gives it."""
+    """Make the file name at one key of a section relative to the current folder, in place, if it is
+    there.
+    """
     if isinstance(inside, dict) and isinstance(inside.get(key), str):
         inside[key] = relative_to_cwd(inside[key], folder)
 
 
 def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the values that the points of all studies set, as far as they have the form of studies at all."""
+    """Yield the mapping `set` of every point that studies list, which may be changed in place.
+
+    Values that do not have the form of studies are passed over: nothing is validated yet.
+    """
     for study in _dicts(values.get("studies")):
         for axis in _dicts(study.get("axes")):
             for point in _dicts(axis.get("points")):
@@ -212,19 +225,19 @@ def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _dicts(values: Any) -> list[dict[str, Any]]:
-    """Return the mappings of a list; nothing of any other value."""
+    """Return the mappings among the items of a list; an empty list for any other value."""
     return [value for value in values if isinstance(value, dict)] if isinstance(values, list) else []
 
 
 def merge_values(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Lay mappings over one another key by key; lists are replaced whole.
+    """Merge two nested mappings key by key into a new one; lists are replaced whole.
 
     Parameters
     ----------
     values : Mapping[str, Any]
-        Values below.
+        Values that are replaced where `over` has the same key.
     over : Mapping[str, Any]
-        Values that go before them.
+        Values that win.
 
     Returns
     -------
@@ -241,7 +254,7 @@ def merge_values(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str
 
 
 def _short(path: str | Path) -> str:
-    """Return a path relative to the current folder if it lies below it."""
+    """Return a path relative to the current folder if it lies below it, else as it is, for messages."""
     path = Path(path)
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
 
@@ -261,7 +274,7 @@ def check_configfiles(arguments: Sequence[str]) -> None:
     Parameters
     ----------
     arguments : Sequence[str]
-        Arguments of the command line.
+        Arguments of Snakemake's command line.
     """
     for name in _config_files(arguments):
         try:

@@ -27,7 +27,7 @@ def oil_of(card: OilCard) -> Oil:
     Returns
     -------
     Oil
-        The oil; temperatures in C.
+        The oil; temperatures in C, kinematic viscosities in m2/s, all else in SI units.
     """
     return Oil(
         name=card.name,
@@ -44,19 +44,20 @@ def oil_of(card: OilCard) -> Oil:
 
 
 def _law(section: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEster | FixedCoefficient:
-    """Return the pressure-viscosity law of an oil from its section."""
+    """Return the pressure-viscosity law of an oil from its section; a fixed coefficient in 1/Pa."""
     if isinstance(section, PowerLaw):
         return PowerOfViscosity(section.scale, section.exponent)
     return FixedCoefficient(1e-9 * section.per_gpa) if isinstance(section, FixedLaw) else PolyolEster()
 
 
 def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tuple[LoadedContact, ...]:
-    """Return the loaded contact with its sliding at rising torques.
+    """Return the loaded contact of a pair, with pressure, sliding and radii at its points, torque by
+    torque.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table `ltca` of stage contact.
+        Table `ltca` of stage contact, of which position (pitches) and unloaded_ste_um are taken.
     pressure : Arrays
         Arrays `pressure` of stage contact.
     section : ToothPair
@@ -65,7 +66,7 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
     Returns
     -------
     tuple[LoadedContact, ...]
-        One contact for each torque.
+        One contact for each torque of the analysis, rising.
 
     Raises
     ------
@@ -80,7 +81,8 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
 
 
 def lubrication_of(section: LubricationSection, teeth: ToothPair) -> Lubrication:
-    """Build the lubrication of the pair's flanks (oil, roughness, friction, bulk temperature) in SI units.
+    """Build the lubrication of a pair's flanks in SI units, with contact modulus and pitch radius of the
+    pair.
 
     Parameters
     ----------
@@ -100,21 +102,24 @@ def lubrication_of(section: LubricationSection, teeth: ToothPair) -> Lubrication
 
 
 def lubrication_request(section: LubricationSection, modulus: float, pitch_radius: float) -> Lubrication:
-    """Return how the flanks are lubricated, in SI units.
+    """Return the lubrication of flanks in SI units, given the two numbers of the pair that it needs.
+
+    Roughness Rq is RQ_PER_RA times Ra where the config gives no Rq.
 
     Parameters
     ----------
     section : LubricationSection
         Section `lubrication` of the config.
     modulus : float
-        Contact modulus E* of the pair, Pa.
+        Contact modulus E* of the pair, Pa: 1/E* is the sum of (1 - nu^2)/E of both. The result has 2 E*.
     pitch_radius : float
         Pitch radius of the pinion, m.
 
     Returns
     -------
     Lubrication
-        Oil, roughness (m), friction and bulk temperature (C).
+        Oil, roughness Ra and Rq (m) of pinion and gear, friction model, source of the bulk temperature
+        (C).
     """
     oil, steel = oil_of(section.oil), section.steel
     rough = section.pinion, section.face_gear
@@ -147,7 +152,8 @@ def limits_of(section: LubricationSection) -> Limits:
     Returns
     -------
     Limits
-        The limits; None where neither section nor oil gives one.
+        Allowed contact temperature (C) with its source, FZG stage, factors and film ratio. The section
+        goes before the oil card; None where neither gives a limit.
     """
     scuffing = section.scuffing
     return Limits(
@@ -161,7 +167,9 @@ def limits_of(section: LubricationSection) -> Limits:
 
 
 def _source_of_contact_temperature(section: LubricationSection) -> str:
-    """Source of the allowed contact temperature, in words."""
+    """Return in words where the allowed contact temperature comes from: key, oil card, FZG stage, or not
+    given.
+    """
     if section.scuffing.temperature_c:
         return "lubrication.scuffing.temperature_c"
     if section.oil.scuffing_temperature_c:
@@ -183,13 +191,17 @@ def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, 
     Returns
     -------
     tuple[float, ...]
-        Speeds, rpm; without any in the section 12 from a tenth of the nominal speed to 1.25 times it.
+        Speeds, rpm: those of the section, else 12 evenly from 0.1 to 1.25 times the nominal speed.
     """
     return section.map_speeds_rpm or tuple(nominal_rpm * (0.1 + 1.15 * step / 11) for step in range(12))
 
 
 def _bulk(section: LubricationSection) -> GivenBulk | Cooling | BorrowedBulk:
-    """Return the source of the bulk temperature from its section."""
+    """Return where the bulk temperature comes from: given (C), cooling of both bodies (W/K), or a supply
+    factor.
+
+    The factor of the way of supply stands in where the section gives neither a temperature nor cooling.
+    """
     bulk = section.bulk
     if bulk.temperature_c is not None:
         return GivenBulk(bulk.temperature_c)
@@ -207,7 +219,12 @@ MODELS: dict[str, Callable[[float], friction.FrictionModel]] = {
 
 
 def _model(section: FrictionSection, oil_factor: float) -> friction.FrictionModel:
-    """Return the model of the friction coefficient from its section."""
+    """Return the model of the friction coefficient from its section.
+
+    A given coefficient goes before given constants of Doleschel's model, and these before the named
+    model. `oil_factor` is the lubricant factor X_L of the oil card, for models that take one; the
+    section's goes before.
+    """
     if section.coefficient is not None:
         return friction.Constant(section.coefficient)
     if section.constants is not None:

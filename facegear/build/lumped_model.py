@@ -34,7 +34,10 @@ from facegear.schema.transmission_error import error_series
 def imperfections(
     section: Transmission, shape: Layout, unloaded_error: Harmonics | None = None
 ) -> Imperfections:
-    """Return the errors of single meshes and bodies.
+    """Return the errors of single meshes and bodies in SI units.
+
+    A part that is not named in the section has no error of its own. Runout and bearing clearance are then
+    those of all parts of the kind.
 
     Parameters
     ----------
@@ -43,12 +46,13 @@ def imperfections(
     shape : Layout
         Layout of the machine.
     unloaded_error : Harmonics or None
-        Transmission error e(t) of the unloaded pair, m, where a mesh takes it.
+        Transmission error e(t) of the unloaded pair, m; needed where a single mesh takes its error from
+        contact.
 
     Returns
     -------
     Imperfections
-        Errors in m and rad.
+        Errors in m and rad, clocking in pitches; meshes and bodies in the order of the layout.
 
     Raises
     ------
@@ -100,7 +104,7 @@ def half_backlash(section: Transmission, shape: Layout) -> Array:
     Raises
     ------
     ConfigError
-        If the backlash of all meshes was not filled in.
+        If `backlash_um` of the section was not filled in.
     """
     if section.backlash_um is None:
         raise ConfigError(
@@ -111,10 +115,13 @@ def half_backlash(section: Transmission, shape: Layout) -> Array:
 
 
 def error_lags(section: Transmission, shape: Layout) -> Array | None:
-    """Return the lag of the transmission error at each mesh.
+    """Return by how much the transmission error of each mesh lags behind that of the reference mesh.
 
-    A mesh that is named itself has its own lag, another one that of its pinion's role, if that is named. A
-    mesh that is not named has none.
+    The key `transmission_error.phasing` decides: `mesh` gives None, `in_step` gives 0 for all meshes. A
+    mapping gives lags by mesh name, or by role and gear, such as `input/upper`.
+
+    A mesh that is named itself has its own lag, another one that of its pinion's role, if that is named.
+    A mesh that is not named has none.
 
     Parameters
     ----------
@@ -126,7 +133,7 @@ def error_lags(section: Transmission, shape: Layout) -> Array | None:
     Returns
     -------
     (meshes,) array or None
-        Lags in mesh periods; None where e(t) lags as the stiffness does.
+        Lags in mesh periods; None where e(t) lags as the stiffness does, `stiffness_phases`.
     """
     phasing = section.transmission_error.phasing
     if phasing == "mesh":
@@ -138,14 +145,19 @@ def error_lags(section: Transmission, shape: Layout) -> Array | None:
 
 
 def _runout(section: RunoutSection | None) -> Runout:
-    """Return a runout, m and rad, from its section; zero without one."""
+    """Return the eccentricity (m) and the angle of its high point at the start (rad); zero where there is
+    no section.
+    """
     if section is None:
         return Runout()
     return Runout(1e-6 * section.eccentricity_um, float(np.radians(section.phase_deg)))
 
 
 def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, Array]:
-    """Return cumulative pitch deviations, m, by number of the body that has them."""
+    """Return cumulative pitch deviations (teeth,) in m by the number of the pinion or gear in its list.
+
+    Bodies without deviations are left out.
+    """
     return {
         body: 1e-6 * np.array(single_part.cumulative_pitch_um)
         for body, single_part in enumerate(bodies)
@@ -169,7 +181,7 @@ def lumped_parts(
     teeth : ToothNumbers
         Tooth numbers of the pair.
     unloaded_error : Harmonics or None
-        Transmission error e(t) of the unloaded pair, m; as in `machine`.
+        Transmission error e(t) of the unloaded pair, m; None if the config does not ask for it.
 
     Returns
     -------
@@ -193,7 +205,10 @@ def machine(
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
 ) -> Machine:
-    """Build the machine that a config describes, with the reference mesh stiffness from its own stage.
+    """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
+
+    `facegear.build.machine.MachineInputs.build` adds elastic gears, poses, friction and errors of single
+    teeth.
 
     Parameters
     ----------
@@ -202,13 +217,14 @@ def machine(
     teeth : ToothNumbers
         Tooth numbers of the pair.
     stiffness : Harmonics
-        Reference mesh stiffness, N/m.
+        Stiffness of the reference mesh over a mesh cycle, N/m; meshes differ from it by phase and factor.
     unloaded_error : Harmonics or None
         Transmission error e(t) of the unloaded pair, m; None if the config does not ask for it.
     parts : LumpedParts or None
-        Result of `lumped_parts` with the same arguments, computed here if None.
+        Result of `lumped_parts` with the same section, teeth and error, computed here if None.
     tables : tuple[FlankTables, ...] or None
-        Tables of the flanks at each gear, where their stiffness depends on the load.
+        Force tables of the flanks at each gear, where mesh forces depend on the load; None for a force
+        that is stiffness times compression.
 
     Returns
     -------
@@ -242,19 +258,20 @@ def machine(
 
 
 def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
-    """Return the periodic torques of section `transmission`.
+    """Return the periodic torques that act on bodies beside their mean torques.
 
     Parameters
     ----------
     section : Transmission
-        As given.
+        Section `transmission` of the config.
     shape : Layout
-        Its bodies.
+        Layout of the machine, which numbers the bodies.
 
     Returns
     -------
     tuple of Excitation
-        In N m and rad.
+        Body number, order (vibrations a turn of the body), amplitude (N m) and phase (rad) of each
+        torque.
     """
     pinions = [pinion.name for pinion in section.pinions]
     bodies = [*pinions, *(gear.side.value for gear in shape.gears)]
@@ -272,7 +289,9 @@ def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
 
 
 def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
-    """Return the lag of the stiffness of each mesh.
+    """Return by how much the stiffness of each mesh lags behind that of the reference mesh.
+
+    The lag follows from tooth numbers, angles and clocking of the pinions, and the phase convention.
 
     Parameters
     ----------
@@ -284,7 +303,8 @@ def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
     Returns
     -------
     (meshes,) array
-        Lags in mesh periods.
+        Lags in mesh periods, 0 to 1; that of mesh 0, first pinion and first gear, is 0 unless it is the
+        lower of two gears.
     """
     shape = layout(section, teeth)
     clocking = imperfections(section, shape).clocking
@@ -292,7 +312,7 @@ def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
 
 
 def external_forces(section: Transmission, shape: Layout) -> Array:
-    """Return the external force on each body.
+    """Return the external force on each body, pinions first, then face gears.
 
     Parameters
     ----------
@@ -304,7 +324,9 @@ def external_forces(section: Transmission, shape: Layout) -> Array:
     Returns
     -------
     (bodies, 3) array
-        Forces along x, y and z of each body, N.
+        Forces along x, y and z, N. Of a pinion x points as the teeth of the upper gear move and y towards
+        the upper gear; z is 0. Of a face gear x points to angle 0, y to a quarter turn, z from lower to
+        upper gear.
     """
     pinions, gears = single_parts(section, shape)
     on_pinions = [(single_part.force_n.x, single_part.force_n.y, 0.0) for single_part in pinions]
@@ -315,7 +337,10 @@ def external_forces(section: Transmission, shape: Layout) -> Array:
 
 
 def given_torques(section: Transmission, shape: Layout) -> Array:
-    """Return the torque on each pinion: its own where it has one, else that of its role.
+    """Return the torque on each pinion: its own `torque_n_m` where it has one, else that of its role.
+
+    By role, an input has `per_input_n_m`, an idler none, and tail pinions carry out `tail_share` of the
+    sum of the inputs, with negative sign.
 
     Parameters
     ----------
@@ -327,7 +352,7 @@ def given_torques(section: Transmission, shape: Layout) -> Array:
     Returns
     -------
     (pinions,) array
-        Torques, N m.
+        Torques on the pinions, N m; positive drives the machine.
     """
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
     single_torques = np.array(
@@ -337,7 +362,8 @@ def given_torques(section: Transmission, shape: Layout) -> Array:
 
 
 def other_gear_torque(section: Transmission) -> float:
-    """Return the torque on the face gear that is not the output.
+    """Return the external torque on the face gear that is not the output; the output balances all
+    torques.
 
     Parameters
     ----------
@@ -347,13 +373,15 @@ def other_gear_torque(section: Transmission) -> float:
     Returns
     -------
     float
-        Torque, N m.
+        Torque, N m; 0 where none is given.
     """
     return float(sum(gear.torque_n_m for gear in section.single_gears.values()))
 
 
 def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
-    """Return the shafts and turning masses of section `transmission`.
+    """Return the shafts that pinions bend on, and the turning masses behind torsional springs.
+
+    Masses of section `torsion` belong to a pinion by its name or role, or to the output gear.
 
     Parameters
     ----------
@@ -365,7 +393,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     Returns
     -------
     DriveLine or None
-        Shafts and masses in SI units; None where there are neither.
+        Shafts condensed to the pinion's seat, and masses, by body number, in SI units; None where there
+        are neither.
     """
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
@@ -379,7 +408,10 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:
-    """Return the turning masses of a shaft in SI units, in the order of the chain."""
+    """Return the turning masses behind one body in SI units, in the order of the config's chain.
+
+    Each has its name, the stiffness of the spring before it (N m/rad), inertia (kg m2) and damping ratio.
+    """
     return tuple(
         TurningMass(part.name, torsional_spring(part), part.inertia_kg_m2, part.damping_ratio)
         for part in chain

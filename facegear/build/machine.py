@@ -35,7 +35,7 @@ TablesOf = Callable[[Layout], tuple[FlankTables, ...]]
 
 
 def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
-    """Return the tables of the flanks at each gear of a machine.
+    """Return the force tables of drive and back flanks at each gear of a machine.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
 
 
 def tables_of(law: Arrays) -> TablesOf:
-    """Return a function that gives the tables of the flanks of many machines.
+    """Return a function that gives the force tables of the flanks of many machines with one mesh law.
 
-    Machines with the same gears share their tables.
+    Machines with the same gears get the same table objects, whose arrays cannot be written.
 
     Parameters
     ----------
@@ -67,7 +67,8 @@ def tables_of(law: Arrays) -> TablesOf:
     Returns
     -------
     TablesOf
-        Function from a layout to the tables of its gears.
+        Function from a layout to the tables of its gears, one FlankTables a gear, as `flank_tables`
+        returns.
     """
     tables = [
         ForceTable(_read_only(levels), _read_only(forces), _read_only(slopes))
@@ -76,6 +77,7 @@ def tables_of(law: Arrays) -> TablesOf:
 
     @cache
     def of_sides(sides: tuple[Side, ...]) -> tuple[FlankTables, ...]:
+        """Return the tables of drive and back flank of gears on these sides; a gear alone has row 0."""
         rows = [GEARS.index(side.value) if len(sides) > 1 else 0 for side in sides]
         numbers = law["flank_variant"][rows]
         return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
@@ -84,7 +86,7 @@ def tables_of(law: Arrays) -> TablesOf:
 
 
 def _read_only(values: Array) -> Array:
-    """Return a copy that refuses to be written into."""
+    """Return a copy of an array that cannot be written, as machines share it."""
     copy = values.copy()
     copy.flags.writeable = False
     return copy
@@ -95,27 +97,29 @@ ORDERS = 8
 
 
 def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
-    """Add friction in motion to a machine.
+    """Return a machine with friction of its meshes, which disturbs the motion and does nothing at rest.
 
-    Each mesh has the friction of the torque that it carries at rest. Between the torques of the contact
-    analysis it is interpolated over the logarithm of the torque, outside them it is that of the nearest.
+    Each mesh has the ratios of friction to elastic force at the torque that it carries at rest, as a
+    Fourier series of ORDERS harmonics over the mesh cycle. Between the torques of the contact analysis
+    they are interpolated over the logarithm of the torque, outside they are those of the nearest.
 
     Parameters
     ----------
     machine : Machine
         The lumped machine.
     table : pd.DataFrame
-        Table `excitation` of stage lubrication, columns EXCITATION_COLUMNS.
+        Table `excitation` of stage lubrication: columns torque_n_m and position (pitches), then friction
+        over mesh force: three force components, and lever arms on pinion and gear (mm).
 
     Returns
     -------
     Machine
-        The machine with friction.
+        Copy of the machine with `friction` set.
 
     Raises
     ------
     NotConverged
-        If the machine has no rest.
+        If the machine has no static equilibrium.
     """
     torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
     table_torques, ratios = _ratios(table)
@@ -128,8 +132,10 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
 
 
 def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
-    """Return torques (t,), N m, and the ratios (t, positions, parts) of friction's excitation at each of
-    them.
+    """Return the torques (t,) of table `excitation`, N m, rising, and its ratios (t, positions, 5).
+
+    The last axis has the columns of EXCITATION_COLUMNS after torque and position: friction over mesh
+    force, as three force components and two lever arms in mm.
     """
     names = list(EXCITATION_COLUMNS[2:])
     by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
@@ -138,7 +144,12 @@ def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
 
 
 def _series(torques: Array, ratios: Array, torque: float) -> Array:
-    """Return the Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
+    """Return the Fourier series (5, 2, orders) of friction's ratios over the mesh cycle at one torque.
+
+    The axis of 2 has the sine part first. `torques` (t,) and `torque` are in N m, `ratios` is (t,
+    positions, 5). Ratios are interpolated (PCHIP) over the logarithm of the torque, which is clipped to
+    the range of `torques`.
+    """
     clipped_torque = np.clip(torque, torques[0], torques[-1])
     at = (
         ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(clipped_torque))
@@ -147,14 +158,18 @@ def _series(torques: Array, ratios: Array, torque: float) -> Array:
 
 
 def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
-    """Scale all torques of a machine so that an input has a given torque in each mesh.
+    """Scale all torques of a machine so that each input pinion has a given torque in each of its meshes.
+
+    An input meshes with all face gears, among which its torque is taken to be shared evenly: the factor
+    is torque times number of face gears over |per_input_n_m|.
 
     Parameters
     ----------
     section : Transmission
         Section `transmission` of the config.
     torque : float
-        Torque on the pinion in each mesh, N m.
+        Torque on an input pinion by each of its meshes, N m. A positive one keeps the signs of all
+        torques, a negative one reverses them.
 
     Returns
     -------
@@ -164,7 +179,7 @@ def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
     Raises
     ------
     ConfigError
-        If inputs carry no torque.
+        If `torque.per_input_n_m` is 0.
     """
     input_torque = section.torque.per_input_n_m
     if input_torque == 0.0:
@@ -176,7 +191,10 @@ def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
 
 
 def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]:
-    """Multiply all torques of section `transmission` by a factor.
+    """Multiply the mean torques of section `transmission` by a factor: inputs, single pinions and single
+    gears.
+
+    Amplitudes of periodic torques and external forces stay.
 
     Parameters
     ----------
@@ -192,6 +210,7 @@ def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]
     """
 
     def scale_torque(section: Mapping[str, Any]) -> dict[str, Any]:
+        """Return a section with its torque multiplied by the factor; a torque of None stays."""
         torque = section.get("torque_n_m")
         return {**section, "torque_n_m": torque if torque is None else part * torque}
 
@@ -207,8 +226,8 @@ def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]
 class MachineInputs:
     """Everything that decides what a lumped machine is.
 
-    The pipeline resolves it from the config and from the files of earlier stages; a feature that changes what
-    a machine is adds a field here and a line to `build`.
+    The pipeline resolves it from the config and from the files of earlier stages; a feature that changes
+    what a machine is adds a field here and a line to `build`.
 
     Attributes
     ----------
@@ -217,8 +236,8 @@ class MachineInputs:
     teeth : ToothNumbers
         Tooth numbers, module (m) and pressure angle (rad) of the pair.
     harmonics : Harmonics or pd.DataFrame or None
-        Mesh stiffness (N/m): a series, or table `harmonics` of stage stiffness, which brings the pair's own
-        transmission error; None where it is not computed.
+        Mesh stiffness (N/m): a series, or table `harmonics` of stage stiffness, which brings the pair's
+        own transmission error; None where it is not computed.
     unloaded_error : Harmonics or None
         Transmission error of the unloaded pair (m) beside a series of the stiffness.
     friction : pd.DataFrame or None
@@ -245,14 +264,15 @@ class MachineInputs:
 
     @classmethod
     def of_config(cls, values: Mapping[str, Any], harmonics: Harmonics | pd.DataFrame) -> Self:
-        """Return the inputs of a machine without anything that earlier stages compute but its stiffness.
+        """Return the inputs of a machine of which only the mesh stiffness is computed or given: no
+        friction, mesh law, poses, elastic gears or errors of single teeth.
 
         Parameters
         ----------
         values : mapping
             Plain values of a whole config.
         harmonics : Harmonics or pd.DataFrame
-            Mesh stiffness, N/m.
+            Mesh stiffness: a series (N/m), or table `harmonics` of stage stiffness.
 
         Returns
         -------
@@ -267,34 +287,37 @@ class MachineInputs:
         )
 
     def at_torque(self, torque_n_m: float) -> Self:
-        """Return inputs of the machine whose inputs carry another torque.
+        """Return the inputs of the machine with all mean torques scaled to another torque of the input
+        pinions.
 
         Parameters
         ----------
         torque_n_m : float
-            Torque of an input in each of its meshes, N m.
+            Torque on an input pinion by each of its meshes, N m.
 
         Returns
         -------
         MachineInputs
-            The same inputs, all torques of the transmission in proportion.
+            A copy with the torques of `at_mesh_torque`; friction, law and poses stay.
         """
         return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
 
     def build(self) -> Machine:
-        """Build the lumped machine from the config, the mesh stiffness and everything else that was computed.
+        """Build the lumped machine from the config, the mesh stiffness and everything else that was
+        computed.
 
         Returns
         -------
         Machine
-            The lumped machine with everything that the inputs hold.
+            The lumped machine with mesh law, elastic gears, errors of single teeth, poses and friction,
+            added in this order as far as the inputs hold them.
 
         Raises
         ------
         ConfigError
             If pinions or torques do not fit the layout.
         NotConverged
-            If the loaded position of the bodies is not found.
+            If the loaded position of the bodies, or the static equilibrium for friction, is not found.
         """
         if self.harmonics is None:
             raise ValueError("harmonics: a mesh stiffness is needed to build a machine")
@@ -318,12 +341,12 @@ class MachineInputs:
 
 
 def elastic_gears(bodies: Arrays, layout: Layout) -> ElasticGears:
-    """Return the face gears of a layout that bend.
+    """Read the reduced bodies of the face gears that bend, by the gears' numbers in a layout.
 
     Parameters
     ----------
     bodies : mapping of arrays
-        Arrays `reduced` of stage gear_bodies.
+        Arrays `reduced` of stage gear_bodies, SI units; names begin with `lower_` or `upper_`.
     layout : Layout
         Layout of the machine.
 

@@ -74,7 +74,8 @@ class ToothNumbers:
         Returns
         -------
         Self
-            Tooth numbers in SI units.
+            Tooth numbers, base radius of the pinion m N1 cos(alpha) / 2 (m) and pressure angle alpha
+            (rad).
         """
         angle = float(np.radians(pressure_angle_deg))
         base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
@@ -84,7 +85,8 @@ class ToothNumbers:
 def lumped_sections(
     transmission: Mapping[str, Any], teeth: Mapping[str, Any]
 ) -> tuple[Transmission, ToothNumbers]:
-    """Return section `transmission` and the tooth numbers from plain values of a validated config.
+    """Return the two arguments of `layout`: section `transmission` and tooth numbers, from plain config
+    values.
 
     Parameters
     ----------
@@ -96,7 +98,7 @@ def lumped_sections(
     Returns
     -------
     tuple[Transmission, ToothNumbers]
-        Section and tooth numbers.
+        The parsed section, and the tooth numbers in SI units.
     """
     return Transmission.of_config(transmission), ToothNumbers.of_config(teeth)
 
@@ -120,7 +122,8 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
 
 
 def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
-    """Return the layout that a config describes.
+    """Return the layout that a config describes: bodies with inertia and bearings, angles of the pinions,
+    meshes.
 
     Equal layouts are one object, so that results cached on it are reused.
 
@@ -146,7 +149,11 @@ def _intern_layout(shape: Layout) -> Layout:
 
 
 def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
-    """Build the layout from section transmission and the numbers of teeth."""
+    """Build the layout from section `transmission` and the tooth numbers.
+
+    The base radius of pinions is that of the teeth, and the radius of the gears conjugate to it, unless
+    the section gives them.
+    """
     radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
     pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
@@ -174,7 +181,8 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
 
 
 def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], list[SingleGear]]:
-    """Return the sections of single pinions and face gears.
+    """Return the sections of single pinions and face gears, which hold what differs from all of their
+    kind.
 
     Parameters
     ----------
@@ -186,7 +194,8 @@ def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinio
     Returns
     -------
     tuple[list[SinglePinion], list[SingleGear]]
-        A section for each pinion and each face gear, in the order of the layout.
+        A section for each pinion and each face gear, in the order of the layout; one without any
+        difference for a part that is not named.
     """
     return (
         [section.single_pinions.get(pinion.name, LIKE_ALL_PINIONS) for pinion in shape.pinions],
@@ -195,7 +204,11 @@ def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinio
 
 
 def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
-    """Return a pinion on its bearing stiffness, or on the stiffness of its shaft where no moment acts."""
+    """Return mass, inertia and bearing stiffness of a pinion, on its own bearings or on its shaft.
+
+    With a shaft the stiffness is the inverse of the shaft's compliance at the pinion, for forces without
+    moment, x and y coupled.
+    """
     single_pinion = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
         return _body(section.pinion, single_pinion)
@@ -206,7 +219,12 @@ def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
 
 
 def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None) -> Body:
-    """Build a body from the data that all share and its own."""
+    """Return mass, inertia, bearing stiffness and tilt of a body; values of the single part go before the
+    shared.
+
+    A face gear with a body that bends tilts as `hub_tilt` says, another one as `tilt` does. Pinions do
+    not tilt.
+    """
     stiffness = (single_part and single_part.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
     assert stiffness is not None
     if ((single_part and single_part.body) or section.body) is None:
@@ -222,7 +240,7 @@ def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear
 
 
 def _tilt(section: TiltSection) -> Tilt:
-    """Return inertia, stiffness and centre of a tilting gear in SI units."""
+    """Return inertia (kg m2), stiffness (N m/rad) and centre (m below the pitch plane) of a tilting gear."""
     below = 1e-3 * section.centre_below_pitch_plane_mm
     return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
 
@@ -246,7 +264,7 @@ def _pitches(pinion: PinionPlace, gear_teeth: int) -> float:
 
 
 def split_kinds(values: Mapping[str, Any]) -> list[str]:
-    """Return the kinds of the groups that split a load: inputs and idlers for the paper's machine.
+    """Return the kinds of the groups of pinions that split a load among their meshes.
 
     Parameters
     ----------
@@ -256,14 +274,16 @@ def split_kinds(values: Mapping[str, Any]) -> list[str]:
     Returns
     -------
     list[str]
-        The kinds, each once.
+        Kinds, each once, as `facegear.sharing.groups` names them: inputs and idlers for the paper's
+        machine.
     """
     groups = split_groups(wired_layout(values["transmission"], values["tooth_pair"]))
     return list(dict.fromkeys(group.kind.value for group in groups))
 
 
 def has_groups(values: Mapping[str, Any]) -> bool:
-    """Whether several pinions do the same, whether or not they split a load.
+    """Whether several meshes belong to pinions of one kind, inputs or others, whether or not they split a
+    load.
 
     Parameters
     ----------
@@ -289,7 +309,8 @@ def stepped_shaft(section: ShaftSection) -> Shaft:
     Returns
     -------
     Shaft
-        Its segments, elasticity, bearings and place of the pinion.
+        Segments in order, elasticity, bearings with their place and stiffness, and place of the pinion
+        along the shaft, m.
     """
     return Shaft(
         tuple(_segment(part) for part in section.segments),
@@ -300,7 +321,9 @@ def stepped_shaft(section: ShaftSection) -> Shaft:
 
 
 def torsional_spring(section: TurningMassSection) -> float:
-    """Return the stiffness of the spring before a turning mass.
+    """Return the stiffness of the torsional spring before a turning mass.
+
+    A given stiffness goes first. Else the segments of a shaft are springs in series.
 
     Parameters
     ----------
@@ -310,7 +333,7 @@ def torsional_spring(section: TurningMassSection) -> float:
     Returns
     -------
     float
-        Given, or of the shaft that its segments make, N m/rad.
+        Torsional stiffness, N m/rad.
     """
     if section.stiffness_n_m_per_rad is not None:
         return section.stiffness_n_m_per_rad
@@ -319,7 +342,7 @@ def torsional_spring(section: TurningMassSection) -> float:
 
 
 def _segment(section: SegmentSection) -> Segment:
-    """Return a segment of a shaft in m."""
+    """Return length, diameter and bore of a segment of a shaft in m."""
     return Segment(1e-3 * section.length_mm, 1e-3 * section.diameter_mm, 1e-3 * section.bore_mm)
 
 

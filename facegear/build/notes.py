@@ -19,9 +19,10 @@ from facegear.teeth.design import BACKLASH_DIFFERS_UM
 
 
 def require_buildable(section: Transmission, teeth: ToothNumbers, model: LumpedParts | None = None) -> None:
-    """Refuse a machine that cannot be put together.
+    """Raise ConfigError for a machine that cannot be put together.
 
-    Errors that press a machine together at rest are allowed, as its bearings give; `preloads` lists them.
+    Manufacturing errors by which flanks or bearings are pressed together at rest are allowed, as bearings
+    give way; `preloads` lists them and `require_room` refuses them.
 
     Parameters
     ----------
@@ -54,7 +55,10 @@ def require_buildable(section: Transmission, teeth: ToothNumbers, model: LumpedP
 
 
 def require_room(section: Transmission, teeth: ToothNumbers, model: LumpedParts | None = None) -> None:
-    """Refuse a machine that is pressed together at rest: it jams where it should turn.
+    """Raise ConfigError for a machine whose errors take up all backlash and clearance, so that it is
+    pressed together at rest.
+
+    Samples and designs are checked by it; a config of its own only gets a note, see `preloads`.
 
     Parameters
     ----------
@@ -75,7 +79,8 @@ def require_room(section: Transmission, teeth: ToothNumbers, model: LumpedParts 
 
 
 def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
-    """List the pinions and meshes that are pressed together at rest.
+    """List the pinions and meshes whose errors exceed backlash and clearance, so that they are pressed
+    together.
 
     Parameters
     ----------
@@ -87,13 +92,18 @@ def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
     Returns
     -------
     list[str]
-        One line each, with key and amount.
+        One line each with key and amount: misfit between the two meshes of a pinion, or depth in a mesh,
+        um.
     """
     return [f"{key}: {amount}" for key, amount, _ in _find_preloads(section, lumped_parts(section, teeth))]
 
 
 def _require_hold(shape: Layout, name: str, single_part: SinglePinion | SingleGear) -> None:
-    """Raise ConfigError for an external force along an axis of a body whose bearing gives way to it."""
+    """Raise ConfigError for an external force on a body along an axis in which its bearing has no
+    stiffness.
+
+    `name` is the name of a pinion, or `lower` or `upper`; `single_part` is its section with the force.
+    """
     key = "single_pinions" if isinstance(single_part, SinglePinion) else "single_gears"
     names = [pinion.name for pinion in shape.pinions] + [gear.side.value for gear in shape.gears]
     bearing = shape.bodies[names.index(name)].bearing
@@ -104,7 +114,10 @@ def _require_hold(shape: Layout, name: str, single_part: SinglePinion | SingleGe
 
 
 def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> None:
-    """Refuse pinions whose teeth cannot mesh with both face gears at their angles."""
+    """Raise ConfigError for the first pinion whose teeth do not fit both face gears at its angle.
+
+    `fit` says how much of the misfit the backlash takes up, and the nearest angles without misfit.
+    """
     for i in np.flatnonzero(~fit.fits):
         pinion = section.pinions[i]
         key, unit = (
@@ -122,7 +135,11 @@ def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> No
 
 
 def _find_preloads(section: Transmission, model: LumpedParts) -> Iterator[tuple[str, str, str]]:
-    """Yield key, amount and requirement of everything that is pressed together at rest."""
+    """Yield key, amount and requirement, as texts, of all pinions and meshes pressed together at rest.
+
+    First come pinions whose two meshes do not fit with their errors, then meshes in which a pinion stands
+    deeper than backlash and bearing clearance allow.
+    """
     shape, flaws = model
     half = half_backlash(section, shape)
     fit = assembly(shape, half, flaws.clocking, flaws)
@@ -184,11 +201,11 @@ SINGLE_TEETH = (
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Return the notes on a config that a user sees once when a run starts.
 
-    There is a note for a config of one's own with the kinematics of the publication, for errors that turn,
-    for dynamics with a backlash other than that of the teeth, for preloads and external forces, for periodic
-    torques that do not repeat with the mesh, for numbers that several causes move, for friction that samples
-    and designs leave out of their motion, for friction of teeth as assembled beside an operating pose, for
-    single teeth, and for values far from their usual size.
+    There is a note for a config that reproduces nothing but has the kinematics of the publication, for
+    errors that turn, for dynamics with a backlash other than that of the teeth, for preloads and external
+    forces, for periodic torques that do not repeat with the mesh, for numbers that several causes move,
+    for friction that samples and designs leave out of their motion, for friction of teeth as assembled
+    beside an operating pose, for single teeth, and for values far from their usual size.
 
     Parameters
     ----------
@@ -221,7 +238,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
 
 
 def _without_friction(values: Mapping[str, Any]) -> list[str]:
-    """Note that samples and designs leave out how friction disturbs the motion."""
+    """Return at most one note: samples or designs leave out how friction disturbs the motion."""
     oil = values.get("lubrication")
     if not oil or oil["friction"]["effect"] == "loss_only":
         return []
@@ -231,7 +248,7 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
 
 
 def _single_teeth(values: Mapping[str, Any]) -> list[str]:
-    """Note which gears have deviations of single teeth."""
+    """Return at most one note that names the gears with measured deviations of single teeth."""
     pair = values.get("tooth_pair") or {}
     keys = [
         f"tooth_pair.{gear}.flanks"
@@ -245,8 +262,9 @@ def _single_teeth(values: Mapping[str, Any]) -> list[str]:
 
 
 def _preloads(values: Mapping[str, Any]) -> list[str]:
-    """Note pinions and meshes that errors press together at rest: bearings and teeth give, and carry that
-    load.
+    """Return a note for each pinion and mesh that errors press together at rest.
+
+    Bearings and teeth give, and carry that load beside the torque.
     """
     if "tooth_pair" not in values or values["transmission"].get("backlash_um") is None:
         return []
@@ -255,7 +273,7 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
 
 
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:
-    """Note which bodies have an external force."""
+    """Return at most one note that names the bodies with an external force."""
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
     bodies = [
         name for name, single_part in singles.items() if any((single_part.get("force_n") or {}).values())
@@ -264,7 +282,7 @@ def _pushes(transmission: Mapping[str, Any]) -> list[str]:
 
 
 def _unrepeated(values: Mapping[str, Any]) -> list[str]:
-    """Note which periodic torques are at no harmonic of the mesh frequency."""
+    """Return at most one note that names the periodic torques which do not repeat with the mesh."""
     transmission = values["transmission"]
     if not transmission["excitations"]:
         return []
@@ -279,7 +297,9 @@ def _unrepeated(values: Mapping[str, Any]) -> list[str]:
 
 
 def _sums(values: Mapping[str, Any]) -> list[str]:
-    """Note keys that several causes of the tolerances move, as in a chain of tolerances or by mistake."""
+    """Return a note for each key that several causes of section `tolerances` move: their changes are
+    added.
+    """
     causes = (values.get("tolerances") or {}).get("causes", ())
     movers: dict[str, list[str]] = {}
     for cause in causes:
@@ -293,7 +313,7 @@ def _sums(values: Mapping[str, Any]) -> list[str]:
 
 
 def turns(transmission: Mapping[str, Any]) -> bool:
-    """Whether a body has a runout or a curve of cumulative pitch deviations.
+    """Whether any body has a runout or cumulative pitch deviations, errors that repeat with its turns.
 
     Parameters
     ----------
@@ -303,7 +323,7 @@ def turns(transmission: Mapping[str, Any]) -> bool:
     Returns
     -------
     bool
-        True if one has.
+        True if at least one has.
     """
     singles = (*transmission["single_pinions"].values(), *transmission["single_gears"].values())
     bodies = (transmission["pinion"], transmission["face_gear"], *singles)
@@ -311,7 +331,9 @@ def turns(transmission: Mapping[str, Any]) -> bool:
 
 
 def _backlash(values: Mapping[str, Any]) -> list[str]:
-    """Note that the given backlash differs from the teeth's own."""
+    """Return at most one note: the given backlash differs from that of the teeth by over
+    BACKLASH_DIFFERS_UM.
+    """
     backlash_um = values["transmission"].get("backlash_um")
     if backlash_um is None or values.get("tooth_pair", {}).get("pinion") is None:
         return []

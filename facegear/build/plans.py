@@ -22,7 +22,10 @@ from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 
 
 def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
-    """Return the sizes of the finite elements in SI units.
+    """Return the sizes of the finite elements of the contact analysis in SI units.
+
+    They are those of the named resolution for this module, or those that the config gives itself.
+    Elements at the fillet are thin where `thin_fillet` is set.
 
     Parameters
     ----------
@@ -34,7 +37,7 @@ def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
     Returns
     -------
     MeshSizes
-        Sizes, m.
+        Element sizes, m.
     """
     resolution = section.resolution
     name = resolution if isinstance(resolution, str) else ""
@@ -48,12 +51,12 @@ def own_sizes(sizes: SizesSection) -> MeshSizes:
     Parameters
     ----------
     sizes : SizesSection
-        Sizes of the config.
+        Element sizes in mm, given in place of a named resolution.
 
     Returns
     -------
     MeshSizes
-        Sizes, m.
+        Element sizes, m; None where the config leaves the fillet open.
     """
     return MeshSizes(
         profile=1e-3 * sizes.profile_mm,
@@ -65,7 +68,7 @@ def own_sizes(sizes: SizesSection) -> MeshSizes:
 
 
 def contact_plan(section: Contact) -> ContactPlan:
-    """Return the plan of the contact analysis in SI units.
+    """Return the settings of the contact analysis, as its code takes them.
 
     Parameters
     ----------
@@ -75,7 +78,8 @@ def contact_plan(section: Contact) -> ContactPlan:
     Returns
     -------
     ContactPlan
-        Torques (N m), positions, refinement, sector and options.
+        Torques on the pinion (N m), positions a pitch, refinement of the contact lattice, teeth in the
+        model, options, element type, and whether root stress is read.
     """
     layer, sector = section.refinement, section.sector
     return ContactPlan(
@@ -90,22 +94,22 @@ def contact_plan(section: Contact) -> ContactPlan:
 
 
 def _number(teeth: int | str) -> int | None:
-    """Return the number of a tooth; None for `all`."""
+    """Return a number of teeth in the model as it is given; None for `all`, the whole gear."""
     return teeth if isinstance(teeth, int) else None
 
 
 def settings(section: Accuracy) -> Settings:
-    """Return the settings of the steady-state search.
+    """Return the settings of the steady-state search, without second looks at doubtful motions.
 
     Parameters
     ----------
     section : Accuracy
-        Section `accuracy` of the config.
+        Section `accuracy` of dynamics, or of the jumps of a search.
 
     Returns
     -------
     Settings
-        The settings; lengths in mesh periods.
+        The settings; lengths of time in mesh periods, tolerances relative. `settle` is at least `dwell`.
     """
     return Settings(
         tolerance=section.tolerance,
@@ -131,7 +135,8 @@ def sweep_plan(section: Sweep) -> SweepPlan:
     Returns
     -------
     SweepPlan
-        The plan; speeds in rpm.
+        The plan; pinion speeds in rpm. Its settings check doubtful motions from SECOND_LOOKS other
+        starts.
     """
     return SweepPlan(
         first_rpm=section.from_rpm,
@@ -151,14 +156,14 @@ def branch_plan(section: Branches | None, nominal_rpm: float) -> BranchPlan:
     Parameters
     ----------
     section : Branches or None
-        Section `branches` of the config; its defaults are used if None.
+        Section `branches` of the config; all its defaults are used if None.
     nominal_rpm : float
-        Nominal pinion speed, rpm.
+        Nominal pinion speed, rpm; starts are explored here where the section names no speeds.
 
     Returns
     -------
     BranchPlan
-        The plan in SI units, but for speeds in rpm.
+        The plan; spread of starts in m, speeds in rpm.
     """
     section = section or Branches()
     return BranchPlan(
@@ -190,7 +195,7 @@ def sharing_options(section: LoadSharing) -> SharingOptions:
     Returns
     -------
     SharingOptions
-        The options; speeds in rpm.
+        The options; spread of starts in m, speeds in rpm.
     """
     speeds = section.speed_range
     return SharingOptions(
@@ -206,17 +211,18 @@ def sharing_options(section: LoadSharing) -> SharingOptions:
 
 
 def map_options(section: SharingMap) -> MapOptions:
-    """Return the section's values in SI units.
+    """Return the settings of the load-sharing map in SI units.
 
     Parameters
     ----------
     section : SharingMap
-        As given.
+        Section `sharing_map` of the config.
 
     Returns
     -------
     MapOptions
-        Lengths in m.
+        Deviations of meshes and pinion positions in m, numbers of samples and points, seed, and factors
+        on the stiffness of the inputs' bearings.
     """
     return MapOptions(
         mesh_error=1e-6 * section.mesh_deviation_um,
@@ -229,7 +235,7 @@ def map_options(section: SharingMap) -> MapOptions:
 
 
 def jump_range(section: Jumps) -> JumpRange:
-    """Return the range of speeds in which jumps are looked for.
+    """Return the range around an operating speed in which a search looks for jumps of the sweep.
 
     Parameters
     ----------
@@ -239,7 +245,7 @@ def jump_range(section: Jumps) -> JumpRange:
     Returns
     -------
     JumpRange
-        Speeds in rpm, with the settings of the sweeps.
+        Range, step and resolution in rpm, with the settings of the steady-state search.
     """
     return JumpRange(
         range_rpm=section.range_rpm,
@@ -250,7 +256,7 @@ def jump_range(section: Jumps) -> JumpRange:
 
 
 def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
-    """Return the request of the stiffness stage, with the series written in the config if there is one.
+    """Return what the stiffness stage is to compute, with the series written in the config.
 
     Parameters
     ----------
@@ -260,7 +266,7 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
     Returns
     -------
     StiffnessRequest
-        The request in SI units.
+        Source, mean (N/m), torque (N m), definition of k, harmonics to keep, and the given series (N/m).
     """
     return StiffnessRequest(
         source=section.source,

@@ -26,7 +26,7 @@ The page is made from the models that check a config (`python -m facegear.build.
 
 
 def reference() -> str:
-    """Write the page of all config keys.
+    """Return the text of the page that lists all config keys, made from the models that check a config.
 
     Returns
     -------
@@ -45,14 +45,21 @@ def reference() -> str:
 
 
 def _row(*cells: str) -> str:
-    """Return a row of a Markdown table from its cells."""
+    """Return a row of a Markdown table with a line end from the texts of its cells; bars in them are
+    escaped.
+    """
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
 
 
 def _rows(
     schema: Mapping[str, Any], key: str, field: Mapping[str, Any], is_required: bool
 ) -> Iterator[tuple[str, str, str, str]]:
-    """A row for the key itself, then those of the keys inside it."""
+    """Yield a row for a key and then, recursively, for all keys inside it.
+
+    A row is the key, its default, its allowed values and its meaning. `field` is the part of the JSON
+    schema that describes the key. Keys inside a list begin with `key[]`, those under free names with
+    `key.<name>`.
+    """
     inside = [_plain(schema, option) for option in _options(field)]
     yield (f"`{key}`", _default(field, is_required), _allowed_values(schema, inside), meaning(schema, field))
     for option in inside:
@@ -89,7 +96,9 @@ def meaning(schema: Mapping[str, Any], field: Mapping[str, Any]) -> str:
 
 
 def _options(field: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Return the forms that a value may have."""
+    """Return the alternatives of a JSON schema's field (`anyOf` or `oneOf`), or the field itself as the
+    only one.
+    """
     return list(field.get("anyOf") or field.get("oneOf") or [field])
 
 
@@ -101,7 +110,9 @@ def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, 
 
 
 def _default(field: Mapping[str, Any], is_required: bool) -> str:
-    """Return the default of a key as text."""
+    """Return the default of a key as code in Markdown; `required`, or a remark for a section with
+    defaults.
+    """
     if is_required:
         return "required"
     value = field.get("default")
@@ -109,7 +120,7 @@ def _default(field: Mapping[str, Any], is_required: bool) -> str:
 
 
 def _allowed_values(schema: Mapping[str, Any], options: list[Mapping[str, Any]]) -> str:
-    """Return the allowed values of a key in words, all forms joined by `or`."""
+    """Return the allowed values of a key in words, its different forms joined by `or`."""
     return " or ".join(dict.fromkeys(_kind(schema, option) for option in options))
 
 

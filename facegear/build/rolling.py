@@ -14,19 +14,21 @@ that of 161, and displacements are off by less than 0.2 %."""
 
 
 def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
-    """Return the bearing of a section.
+    """Return the rolling bearing that a section describes, with ball or line contact by its type.
+
+    Groove ratios and slices that the section leaves open are GROOVE_RATIO and SLICES.
 
     Parameters
     ----------
     section : RollingSection
-        The section, validated.
+        Section of a rolling bearing, validated.
     speed : float
         Speed of the inner ring for centrifugal forces, rad/s; 0 leaves them out.
 
     Returns
     -------
     BallBearing or RollerBearing
-        SI units.
+        The bearing in SI units, angles in rad; `direction` is -1 where it is loaded along -z, else 1.
     """
     common = {
         "element_diameter": 1e-3 * section.element_diameter_mm,

@@ -55,7 +55,7 @@ def limits_of(card: Card) -> MaterialCard:
     Returns
     -------
     MaterialCard
-        Moduli and limits in Pa, lengths in m.
+        Moduli and limits in Pa, lengths in m; None for pitting or bending that the card does not give.
     """
     bending, pitting = card.bending, card.pitting
     return MaterialCard(
@@ -82,13 +82,16 @@ def limits_of(card: Card) -> MaterialCard:
 
 
 def _life(limits: Limits) -> Life:
-    """Return the life factors over cycles of a material card's limits."""
+    """Return numbers of load cycles and the life factor at each, from the pairs of a material card's
+    limits.
+    """
     cycles, factors = zip(*limits.life, strict=True)
     return Life(cycles, factors)
 
 
 def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
-    """Return the bins of the duty cycle with all load factors that section `strength` gives.
+    """Return the bins of the duty cycle, torques multiplied by all load factors that section `strength`
+    gives.
 
     Parameters
     ----------
@@ -98,7 +101,7 @@ def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
     Returns
     -------
     tuple[DutyBin, ...]
-        Torque on the pinion (N m), speed (1/s) and time (s) of each bin.
+        Torque on the pinion (N m), speed of the pinion (turns a second) and time (s) of each bin.
     """
     return tuple(
         DutyBin(section.factor * load.torque_n_m, load.speed_rpm / 60.0, 3600.0 * load.hours)
@@ -109,7 +112,12 @@ def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
 def rating_request(
     section: Strength, design: PairDesign, spectrum: "pd.DataFrame | None" = None
 ) -> RatingRequest:
-    """Return the request of the rating in SI units.
+    """Return what a rating needs in SI units: limits of materials, loads and cycles of the flanks,
+    factors.
+
+    Without a spectrum a tooth of the pinion is loaded `cycles_per_turn` times a turn of the pinion, a
+    tooth of the gear that often a turn of the gear. With one, loads and cycles are those of each flank in
+    the machine.
 
     Parameters
     ----------
@@ -118,13 +126,14 @@ def rating_request(
     design : PairDesign
         Geometry of the pair.
     spectrum : pd.DataFrame or None
-        Loads of the flanks in the machine, from stage duty_loads; None where the section gives the load
-        factors.
+        Loads of the flanks in the machine from stage duty_loads, columns DUTY_SPECTRUM_COLUMNS; None
+        where the section gives the load factors.
 
     Returns
     -------
     RatingRequest
-        Limits and duty of both gears, time (s) and smallest safeties.
+        Material limits and root roughness (m) by `pinion` and `face_gear`, loads of the flanks, duration
+        of the duty cycle (s), and the smallest safeties allowed.
     """
     duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
     sections = {"pinion": section.pinion, "face_gear": section.face_gear}

@@ -161,6 +161,10 @@ def check_search(
 def _variable(
     pair: ToothPair, machine: Transmission, lubrication: LubricationSection | None = None
 ) -> dict[str, Any]:
-    """Return the keys that samples and studies may change, with their values."""
+    """Return the config values that samples and designs may change, as `variable_part`, at a speed of 0
+    rpm.
+
+    They serve to check keys, so that the speed does not matter.
+    """
     oil = lubrication.model_dump(mode="json") if lubrication is not None else None
     return variable_part(machine.model_dump(mode="json"), pair.model_dump(mode="json"), 0.0, oil)

@@ -64,7 +64,7 @@ class ToothPair(Section):
     @model_validator(mode="before")
     @classmethod
     def _read_flank_files(cls, values: Any) -> Any:
-        """Files of measured flanks are read here, so that a fault is reported before any work."""
+        """Read files of measured flanks into the values, so that a fault is reported before any work."""
         return read_files(values)
 
     @model_validator(mode="after")
@@ -79,7 +79,11 @@ class ToothPair(Section):
             refuse("face_gear_teeth", self.face_gear_teeth, f"more than the pinion's {self.pinion_teeth}")
 
     def _check_bodies(self) -> None:
-        """Refuse a pair of which only some of pinion, face gear and shaper are given."""
+        """Refuse a pair of which only some of pinion, face gear and shaper are given, and geometry that
+        cannot be.
+
+        Measured flanks must belong to the bodies. A pair without any of the three is allowed.
+        """
         bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
         absent_bodies = [name for name, body in bodies.items() if body is None]
         if len(absent_bodies) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
@@ -96,7 +100,7 @@ class ToothPair(Section):
 
 
 def pair_design(section: ToothPair) -> PairDesign:
-    """Return the geometry of the pair, its flanks with the mean deviations of their teeth.
+    """Return the geometry of the pair, its measured flanks with the mean deviations of all teeth.
 
     Parameters
     ----------
@@ -121,19 +125,23 @@ def pair_design(section: ToothPair) -> PairDesign:
 
 
 def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
-    """Return the differences of single teeth from the mean of all teeth, for one flank of each gear.
+    """Return what measured deviations of each tooth have beyond the mean of all teeth, for the flanks in
+    contact.
+
+    The pinion's drive flank is its right one, and meets the gear's left one.
 
     Parameters
     ----------
     section : ToothPair
         Section `tooth_pair` of the config.
     flank : str
-        `drive` or `back`.
+        Flanks that touch: `drive` or `back`.
 
     Returns
     -------
     dict[Body, Teeth]
-        Differences (m) tooth by tooth for each gear; None for a tooth without any.
+        For `pinion` and `face_gear` one grid of differences (m) for each tooth; None for every tooth
+        where all are alike.
 
     Raises
     ------
@@ -157,7 +165,7 @@ def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
 
 
 def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, int]]:
-    """Bodies with grids, and their numbers of teeth."""
+    """Yield name, section `flanks` and number of teeth of each body that has grids of deviations."""
     teeth = section.pinion_teeth, section.face_gear_teeth
     for body, count in zip(BODIES, teeth, strict=True):
         body_section: PinionSection | FaceGearSection | None = getattr(section, body)
@@ -166,7 +174,9 @@ def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, 
 
 
 def _nominal(section: ToothPair) -> PairDesign:
-    """Return the design of a pair with all flanks as designed, without measured deviations."""
+    """Return the design of a pair in SI units with modified but not measured flanks; ConfigError without
+    bodies.
+    """
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:
@@ -206,7 +216,7 @@ def _nominal(section: ToothPair) -> PairDesign:
 
 
 def materials(section: ToothPair) -> tuple[Material, Material]:
-    """Return the materials of pinion and face gear.
+    """Return the materials of pinion and face gear: their own, else that of the pair.
 
     Parameters
     ----------
@@ -216,7 +226,7 @@ def materials(section: ToothPair) -> tuple[Material, Material]:
     Returns
     -------
     tuple[Material, Material]
-        Both materials in SI units.
+        Young's modulus (Pa) and Poisson's ratio of pinion and face gear.
     """
     body_materials = [body.material if body else None for body in (section.pinion, section.face_gear)]
     pinion, gear = (_material(material or section.material) for material in body_materials)
@@ -241,7 +251,7 @@ class Pair:
         Returns
         -------
         Material
-            Its material.
+            Young's modulus (Pa) and Poisson's ratio.
         """
         return self.materials[("pinion", "face_gear").index(body)]
 
@@ -268,12 +278,12 @@ def pair(section: ToothPair) -> Pair:
 
 
 def _material(section: MaterialSection) -> Material:
-    """Return a material in SI units."""
+    """Return a material with Young's modulus in Pa."""
     return Material(1e9 * section.young_modulus_gpa, section.poisson_ratio)
 
 
 def _modifications(section: GearModificationsSection) -> GearModifications:
-    """Return the face gear's modifications in m."""
+    """Return the modifications of the face gear's flank, lengths in m."""
     return GearModifications(
         tip_relief=_relief(section.tip_relief),
         root_relief=_relief(section.root_relief),
@@ -301,12 +311,13 @@ class ContactSetup:
 
     @property
     def memory(self) -> float:
-        """Estimated bytes of the larger body's compliance."""
+        """Estimated memory of the compliance of the larger body, bytes."""
         return estimated_memory(self.pair.design, self.sizes, self.plan)
 
 
 def contact_setup(tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> ContactSetup:
-    """Set up the contact analysis, with as many cuts along the face as the contact ellipse asks for.
+    """Gather pair, element sizes and plan of a contact analysis, with enough cuts along the face for its
+    ellipse.
 
     Parameters
     ----------

@@ -66,7 +66,12 @@ class Split:
 
     @property
     def excess(self) -> float:
-        """Worst number over what a right split allows; at most 1 where the split is right."""
+        """Largest ratio of a number of the split to what a right split allows, dimensionless; at most 1
+        if right.
+
+        Allowed are LARGEST_K_GAMMA for inputs, idlers and the group ratio, and LEAST_K_GAMMA from below
+        for idlers.
+        """
         low, high = self.idlers
         return float(
             max(
@@ -91,21 +96,27 @@ def choose_bearings(
     wishes: tuple[float | None, float | None, float | None],
     machine_with: Callable[[Bearings], Machine],
 ) -> ChosenBearings:
-    """Choose the bearings of inputs and idlers by the closed form, and check them by the full statics.
+    """Choose the radial bearing stiffness of inputs, idlers and face gears so that the torque is split
+    evenly.
+
+    Tried are idler bearings from stiff to soft (IDLERS) and, for each, input bearings by which the closed
+    form gives K_gamma of the inputs in AIMS. Each trial is checked by statics over the hunting cycle with
+    errors.
 
     Parameters
     ----------
     closed_form : SplitMachine
-        The machine in numbers.
+        The machine without errors, for the closed form.
     wishes : tuple of three floats or None
-        Radial stiffness of inputs, idlers and gears, N/m, where it is given.
+        Radial stiffness of inputs, idlers and gears, N/m, each None where the choice is left.
     machine_with : callable
-        The machine with some bearings and its errors.
+        Function from bearings to the machine with them and its errors.
 
     Returns
     -------
     ChosenBearings
-        The first bearings with a right split by MARGIN, else those that come nearest to one.
+        The first bearings whose `Split.excess` is at most MARGIN, else those with the smallest, and their
+        split.
     """
     given_input, given_idler, given_gear = wishes
     mesh = closed_form.mesh_stiffness
@@ -130,7 +141,8 @@ def choose_bearings(
 
 
 def split_of(machine: Machine) -> Split:
-    """Estimate how the machine shares its load, by some cycles spread over the hunting cycle.
+    """Estimate how a machine shares its load at rest, by about CYCLES mesh cycles spread over the hunting
+    cycle.
 
     Parameters
     ----------
@@ -140,7 +152,8 @@ def split_of(machine: Machine) -> Split:
     Returns
     -------
     Split
-        Load sharing at rest.
+        K_gamma of inputs and idlers, largest ratio of a path's load to the mean of its group, and mean
+        torque of each mesh.
     """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // CYCLES, 1))
     roles = [machine.layout.pinions[pinion].role for pinion, _ in machine.layout.meshes]
@@ -159,27 +172,36 @@ def split_of(machine: Machine) -> Split:
 
 
 def _group_ratio(run: HuntingCycle) -> float:
-    """Return the largest ratio of a mesh's load to its group's mean, nan without groups."""
+    """Return the largest load of a path over the mean of its group, over all positions of a hunting
+    cycle.
+
+    Only groups that split a load count; NaN without any.
+    """
     ratios = [run.group_ratios(group).max() for group in run.groups if group.splits_load]
     return float(max(ratios, default=np.nan))
 
 
 def smallest_torque(closed_form: SplitMachine, bearings: Bearings, torque: float) -> float:
-    """Find the torque from which the softest bearing gives LARGEST_K_GAMMA without errors.
+    """Find the input torque from which inputs on the softest bearings reach a K_gamma of at most
+    LARGEST_K_GAMMA.
+
+    The closed form without errors is evaluated at torques that rise by factors of 2^(1/4), up to 2^11.75
+    times.
 
     Parameters
     ----------
     closed_form : SplitMachine
-        The machine in closed form.
+        The machine in closed form, at its present torque.
     bearings : Bearings
-        Bearings of the machine.
+        Bearings of the machine, of which those of the idlers are taken.
     torque : float
-        Torque of an input now, N m.
+        Present torque of an input, N m.
 
     Returns
     -------
     float
-        Torque of an input, N m; infinite where no torque is enough.
+        First of these torques of an input that is enough, N m, the present one included; infinite if none
+        is.
     """
     loop = closed_form.input_k_gamma(SOFTEST * closed_form.mesh_stiffness, bearings.idlers)
     if loop <= LARGEST_K_GAMMA:

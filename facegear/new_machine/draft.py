@@ -80,24 +80,29 @@ class Draft:
         self._take("mesh_damping_n_s_per_m")
 
     def _take(self, *names: str) -> None:
-        """Put what is given in the place of what was chosen."""
+        """Replace chosen values by the user's wishes of the same names, where they are given, in place."""
         wished = {name: getattr(self.wishes, name) for name in names}
         self.values |= {name: value for name, value in wished.items() if value is not None}
 
     def _damping(self) -> float:
-        """Damping of a mesh, N s/m, from the inertias that it couples."""
+        """Return the damping of a mesh, N s/m: DAMPING_RATIO times its critical damping.
+
+        The mass is the effective one of pinion and gear along the line of action, the stiffness the
+        estimated one.
+        """
         base = self.teeth.design.pinion_base_radius
         ratio = self.wishes.face_gear_teeth / self.wishes.pinion_teeth
         mass = 1.0 / (base**2 / self.pinion_inertia + (base * ratio) ** 2 / self.gear_inertia)
         return 2.0 * DAMPING_RATIO * sqrt(self.stiffness * mass)
 
     def closed_form(self) -> SplitMachine:
-        """The numbers that load sharing depends on.
+        """Return the numbers that load sharing without errors depends on.
 
         Returns
         -------
         SplitMachine
-            Equal inputs and idlers with the estimated mesh stiffness, N/m.
+            Equal inputs and idlers, force of an input (N), estimated mesh stiffness (N/m) and backlash
+            (m).
         """
         design = self.teeth.design
         return SplitMachine(
@@ -110,7 +115,8 @@ class Draft:
         )
 
     def stiff_bearings(self) -> Bearings:
-        """Bearings of a machine that splits no load, as given or STIFF times as stiff as a mesh.
+        """Return the bearings of a machine that splits no load: as given, else STIFF times as stiff as a
+        mesh.
 
         Returns
         -------
@@ -122,17 +128,17 @@ class Draft:
         return Bearings(*(stiff if stiffness is None else stiffness for stiffness in bearing_wishes))
 
     def machine(self, bearings: Bearings) -> Machine:
-        """The machine with these bearings and one constant mesh stiffness, an estimate.
+        """Build the lumped machine with these bearings and a constant, estimated mesh stiffness.
 
         Parameters
         ----------
         bearings : Bearings
-            Radial stiffness, N/m.
+            Radial stiffness of the bearings of inputs, idlers and gears, N/m.
 
         Returns
         -------
         Machine
-            Machine with errors, without a load-dependent law.
+            Machine with the draft's errors of bodies, without transmission error.
         """
         values = deepcopy(self.values_of_config)
         transmission = values["transmission"]
@@ -145,7 +151,9 @@ class Draft:
 
     @cached_property
     def values_of_config(self) -> dict[str, Any]:
-        """Plain values of the config with stiff bearings, checked."""
+        """Plain values of the validated config with stiff bearings and no transmission error, for
+        estimates.
+        """
         torque = self.wishes.torque_n_m
         with TemporaryDirectory() as folder:
             path = Path(folder) / "draft.yaml"
@@ -156,19 +164,22 @@ class Draft:
         return resolved_values(config_of(values))
 
     def _spring_values(self, radial: float) -> dict[str, float]:
-        """Return bearing stiffness along x, y and z, N/m, from a radial one."""
+        """Return bearing stiffness along x, y and z, N/m: radial along x and y, along z the wish for it,
+        else the same.
+        """
         axial = self.wishes.axial_bearing_n_per_m
         return {"x": radial, "y": radial, "z": radial if axial is None else axial}
 
     def text(self, bearings: Bearings, loads: tuple[float, float]) -> str:
-        """Return the config as YAML.
+        """Return the config as YAML text, each choice with a comment that gives its reason.
 
         Parameters
         ----------
         bearings : Bearings
-            Radial stiffness, N/m.
+            Radial stiffness of the bearings of inputs, idlers and gears, N/m.
         loads : tuple of two floats
-            Smallest and largest torque of a mesh at rest, N m.
+            Smallest and largest torque on a pinion by a mesh at rest, N m; the contact analysis covers
+            both.
 
         Returns
         -------
@@ -211,7 +222,11 @@ class Draft:
         )
 
     def _load_sharing(self, cycles: int, points: int) -> str:
-        """Section load_sharing; nothing for a machine of one mesh, which shares no load."""
+        """Return section load_sharing as text of the config: empty for a machine of one pinion, which
+        shares no load.
+
+        `cycles` are mesh cycles of the hunting cycle, `points` speeds over the range of the sweep.
+        """
         if self.wishes.pinions + self.wishes.idlers == 1:
             return ""
         slow, fast = (factor * self.wishes.speed_rpm for factor in SPEEDS)
@@ -219,9 +234,11 @@ class Draft:
         return f"load_sharing: {{cycles: {cycles}, speed_range: {speeds}}}"
 
     def _refinement(self, torque: float) -> int:
-        """Cuts across the profile that resolve the contact at a torque, N m.
+        """Return how many cuts across the profile resolve the contact strip at a torque on the pinion, N
+        m.
 
-        Raises FacegearError for a load too light to resolve.
+        There are at least PROFILE_CUTS. Raises FacegearError where more than MOST_CUTS would be needed,
+        with the torque that is enough.
         """
         design = self.teeth.design
         strip = half_width(design, (MATERIAL, MATERIAL), 0.99 * torque)
@@ -240,19 +257,27 @@ class Draft:
         return 0.5e-3 * self.wishes.module_mm * self.wishes.face_gear_teeth
 
     def _bearing(self, radial: float) -> str:
-        """Return a bearing as text of the config."""
+        """Return a bearing with this radial stiffness, N/m, as text of the config."""
         springs = self._spring_values(radial)
         return "{" + ", ".join(f"{axis}: {stiffness:.3g}" for axis, stiffness in springs.items()) + "}"
 
     def _runout(self, diameter_mm: float, phase_deg: float) -> str:
-        """Runout of a body of a split-torque machine as a further key; nothing for other machines."""
+        """Return the runout of a body as text of a further key of the config; empty for machines without
+        idlers.
+
+        Its eccentricity is half the cumulative pitch deviation of grade 5 at this pitch diameter.
+        """
         if not self.wishes.idlers:
             return ""
         eccentricity = 0.5 * cumulative_pitch_um(diameter_mm, self.wishes.module_mm)
         return f", runout: {{eccentricity_um: {eccentricity:.3g}, phase_deg: {phase_deg:.4g}}}"
 
     def _single_pinions(self, bearings: Bearings) -> str:
-        """Bearings and errors of the pinions of a split-torque machine; nothing for other machines."""
+        """Return section single_pinions as text of the config: bearings of idlers, positions, runouts.
+
+        Directions of the errors turn by GOLDEN_DEG from pinion to pinion. The text is empty without
+        idlers.
+        """
         if not self.wishes.idlers:
             return ""
         away = position_um(self._gear_pitch_radius())
@@ -271,14 +296,14 @@ class Draft:
         return "".join(lines)
 
     def _shaper_reason(self) -> str:
-        """Say why the shaper has its number of teeth."""
+        """Return why the shaper has its number of teeth, in words."""
         if self.more_shaper_teeth == MORE_SHAPER_TEETH[0]:
             return "three more than the pinion, which localises the contact"
         count = count_noun(self.more_shaper_teeth, "tooth", "teeth")
         return f"{count} more than the pinion, which spreads the contact: pitting allows no more"
 
     def _reasons(self) -> dict[str, str]:
-        """Return the reason of each value of the config, or that the user gave it."""
+        """Return the reason of each chosen value of the config by its name; `given` for a user's wish."""
         low, high = (1e3 * radius for radius in self.teeth.face_limits)
         face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
         soft = "; soft bearings let the inputs share between both gears" if self.wishes.idlers else ""
@@ -308,7 +333,7 @@ class Draft:
 
 
 def cumulative_pitch_um(diameter_mm: float, module_mm: float) -> float:
-    """Cumulative pitch deviation F_p, um, of ISO 1328-1:2013 grade 5.
+    """Total cumulative pitch deviation F_p, um, that ISO 1328-1:2013 allows in grade 5.
 
     Parameters
     ----------
@@ -324,7 +349,8 @@ def cumulative_pitch_um(diameter_mm: float, module_mm: float) -> float:
 
 
 def position_um(radius: float) -> float:
-    """Distance, um, of a bearing from its place at a radius (m): half of the tolerance IT5 of ISO 286-1.
+    """Distance, um, by which a bearing is out of place: half of the tolerance IT5 of ISO 286-1 for its
+    radius.
 
     Parameters
     ----------
@@ -341,29 +367,37 @@ def position_um(radius: float) -> float:
 
 
 def _ring(outer_mm: float, inner_mm: float, width_mm: float) -> tuple[float, float]:
-    """Mass (kg) and inertia (kg m2) of a steel ring."""
+    """Return mass (kg) and moment of inertia about the axis (kg m2) of a steel ring with these radii and
+    width.
+    """
     outer, inner, width = 1e-3 * outer_mm, 1e-3 * inner_mm, 1e-3 * width_mm
     mass = STEEL * pi * (outer**2 - inner**2) * width
     return mass, 0.5 * mass * (outer**2 + inner**2)
 
 
 def _short(value: float) -> float:
-    """Round a number to four digits."""
+    """Round a number to four significant digits."""
     return float(f"{value:.4g}")
 
 
 def _text(value: float) -> str:
-    """Return a number with four digits as text."""
+    """Return a number as text with four significant digits."""
     return f"{value:.4g}"
 
 
 def _gears(wishes: MachineWishes) -> tuple[str, ...]:
-    """Return the face gears that the machine needs: both if there are idlers."""
+    """Return the sides of the face gears that the machine needs: lower and upper with idlers, else upper
+    alone.
+    """
     return ("lower", "upper") if wishes.idlers else ("upper",)
 
 
 def _pinion_roles(wishes: MachineWishes) -> list[tuple[str, str]]:
-    """Name and role of each pinion, the roles evenly among each other."""
+    """Return name and role of each pinion in the order of their angles.
+
+    Roles are `input` and `idler`, spread as evenly as their numbers allow; names number them, such as
+    `idler 2`.
+    """
     count = wishes.pinions + wishes.idlers
     roles, numbers = [], {"input": 0, "idler": 0}
     for number in range(count):
@@ -375,7 +409,7 @@ def _pinion_roles(wishes: MachineWishes) -> list[tuple[str, str]]:
 
 
 def _pinions(wishes: MachineWishes) -> str:
-    """The pinions, evenly around the gear.
+    """Return the pinions as text of the config's list: name, role and angle, evenly around the gear.
 
     Between two gears they stand at whole halves of a pitch, where the teeth of both fit.
     """

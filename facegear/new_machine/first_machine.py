@@ -40,23 +40,24 @@ LEAST_PART = 1e-4
 
 
 def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: float) -> Iterator[str]:
-    """Estimate ratio, power, load sharing, safety and resonances.
+    """Yield lines of estimates: ratio and power, load sharing, safety, resonances, and advice where one
+    is poor.
 
     Parameters
     ----------
     draft : Draft
-        The machine.
+        The machine without bearings.
     bearings : Bearings
-        Radial stiffness, N/m.
+        Radial stiffness of its bearings, N/m.
     split : Split
-        How it shares its load.
+        How the machine with these bearings shares its load.
     mesh_torque : float
-        Torque on a pinion of the hardest loaded mesh, N m.
+        Torque on the pinion by the most loaded mesh, N m.
 
     Returns
     -------
     iterator of str
-        A line each, with units.
+        One line of text for each estimate, with units.
     """
     wishes = draft.wishes
     ratio = wishes.face_gear_teeth / wishes.pinion_teeth
@@ -88,7 +89,9 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
 
 
 def _poor_split(draft: Draft, bearings: Bearings) -> str:
-    """Say by how much the load is shared unevenly and what would help."""
+    """Return a line that says that the load is shared unevenly, with the load per area of face, and what
+    would help.
+    """
     wished_bearings = [name for name in RADIAL if getattr(draft.wishes, name) is not None]
     least = smallest_torque(draft.closed_form(), bearings, draft.wishes.torque_n_m)
     width = 1e-3 * (draft.outer - draft.inner)
@@ -118,37 +121,41 @@ class Safeties:
 
     @property
     def spare(self) -> float:
-        """Smaller one of both safeties over its reserve and what is required; below 1 it may be red."""
+        """Smaller one of `spare_bending` and `spare_pitting`; below 1 the rating of the report may fail."""
         return min(self.spare_bending, self.spare_pitting)
 
     @property
     def spare_bending(self) -> float:
-        """Safety against bending over its reserve and what is required."""
+        """Safety against bending over what is required and what the estimate may be too large by
+        (RESERVES).
+        """
         return self.bending / (RESERVES["bending"] * self.required_bending)
 
     @property
     def spare_pitting(self) -> float:
-        """Safety against pitting over its reserve and what is required."""
+        """Safety against pitting over what is required and what the estimate may be too large by
+        (RESERVES).
+        """
         return self.pitting / (RESERVES["pitting"] * self.required_pitting)
 
 
 def estimate_safeties(draft: Draft, mesh_torque: float) -> Safeties:
-    """Estimate the safety of the pinion by the standard for cylindrical gears.
+    """Estimate the pinion's safety against bending and pitting by the standard for cylindrical gears.
 
-    The standard's contact ratio factor is left out: it is for a load that several pairs carry evenly along
-    the face, and flanks with crowning carry the largest pressure while one pair is in contact.
+    The standard's contact ratio factor is left out: it is for a load that several pairs carry evenly
+    along the face, and flanks with crowning carry the largest pressure while one pair is in contact.
 
     Parameters
     ----------
     draft : Draft
-        The machine.
+        The machine, of which teeth and section `strength` are taken.
     mesh_torque : float
-        Torque on the pinion, N m.
+        Torque on the pinion by its mesh, N m.
 
     Returns
     -------
     Safeties
-        For the endurance limit, dimensionless.
+        Safeties for the endurance limit, and those required, dimensionless.
     """
     design, ratio = draft.teeth.design, draft.teeth.analysis.contact_ratio
     request = rating_request(parse(Strength, draft.values_of_config["strength"]), design)
@@ -162,9 +169,17 @@ def estimate_safeties(draft: Draft, mesh_torque: float) -> Safeties:
 
 
 def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
-    """Name the torque at which the rating would be as required."""
+    """Return a line that names the safety without reserve and the input torque at which it would have
+    one.
+
+    The torque is found by root search over its logarithm, down to LEAST_PART of the present one; a larger
+    module always helps.
+    """
 
     def excess(logarithm: float) -> float:
+        """Return the logarithm of the spare safety at a torque given as logarithm of its ratio to
+        `mesh_torque`.
+        """
         return log(estimate_safeties(draft, mesh_torque * exp(logarithm)).spare)
 
     nearest = "a larger module"
@@ -183,23 +198,23 @@ def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
 
 
 def load_concentration(design: PairDesign, mesh_torque: float) -> float:
-    """Estimate the largest line load of a pair over its mean along the face.
+    """Estimate the largest line load of a tooth pair along the face over its mean.
 
-    A shaper with more teeth than the pinion crowns the flanks against each other: beside the path of contact
-    they part by half the smaller relative curvature times the distance squared. The face carries the load as
-    independent strips with the mesh stiffness of the standard.
+    A shaper with more teeth than the pinion crowns the flanks against each other: beside the path of
+    contact they part by half the smaller relative curvature times the distance squared. The face carries
+    the load as independent strips with the mesh stiffness of the standard.
 
     Parameters
     ----------
     design : PairDesign
-        The pair.
+        Geometry of the pair.
     mesh_torque : float
         Torque on the pinion, N m, that one pair of teeth carries.
 
     Returns
     -------
     float
-        Dimensionless; 1 for flanks without crowning.
+        Ratio, dimensionless, at least 1; 1 for flanks without crowning.
     """
     gear, path = design.face_gear, 0.5 * design.module * design.face_gear.teeth
     inner, outer = gear.inner_radius - path, gear.outer_radius - path
@@ -212,6 +227,7 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
     first_touch = 0.5 * curvature * nearest**2
 
     def excess(approach: float) -> float:
+        """Return the load of the strips at an approach (m) less the given one, both over STIFFNESS, m2."""
         reach = sqrt(2.0 * approach / curvature)
         start, end = max(inner, -reach), min(outer, reach)
         return approach * (end - start) - curvature * (end**3 - start**3) / 6.0 - approach_of_force
@@ -222,7 +238,11 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
 
 
 def _resonances(draft: Draft, bearings: Bearings) -> str:
-    """Name the resonances near the speed of the machine."""
+    """Return a line with pinion speeds (rpm) at which the mesh frequency meets a natural frequency.
+
+    Listed are at most RESONANCES between the ends of the sweep, from the lowest on; else the lowest of
+    all.
+    """
     wishes = draft.wishes
     slow, fast = (max(factor * wishes.speed_rpm, 1.0) for factor in SPEEDS)
     frequencies = np.unique(np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies, 1))
@@ -239,7 +259,7 @@ def _resonances(draft: Draft, bearings: Bearings) -> str:
 
 
 def _text(number: float) -> str:
-    """Return a number with four digits as text."""
+    """Return a number as text with four significant digits."""
     return format_number(number, 4, group_digits=False)
 
 
@@ -256,17 +276,19 @@ class FirstMachine:
 
 
 def first_machine(wishes: MachineWishes) -> FirstMachine:
-    """Choose what is not wishes, and estimate what the machine will do.
+    """Choose all numbers of a machine that are not wished, and estimate what the machine will do.
+
+    Where the safety is too small, shapers with fewer teeth are tried, which spread the contact.
 
     Parameters
     ----------
     wishes : MachineWishes
-        Values that a user gave.
+        Values that a user gave; None leaves a choice.
 
     Returns
     -------
     FirstMachine
-        Config text and expectations.
+        Config as YAML text with the reason of each choice, and one line for each estimate.
 
     Raises
     ------
@@ -301,13 +323,19 @@ class _Machine:
 
     @cached_property
     def spare(self) -> tuple[float, float]:
-        """Spare safety of the hardest loaded pinion, and that against pitting, which the shaper changes."""
+        """`Safeties.spare` at the most loaded mesh, and `spare_pitting`, which the shaper changes, to
+        compare machines.
+        """
         safeties = estimate_safeties(self.draft, self.loads[1])
         return safeties.spare, safeties.spare_pitting
 
 
 def _machine(draft: Draft) -> _Machine:
-    """Choose the bearings of a draft."""
+    """Choose the bearings of a draft and compute its load sharing and smallest and largest mesh torque.
+
+    With idlers the bearings are chosen for an even split, else they are stiff. Meshes below LEAST_LOADED
+    of the largest torque are left out of the smallest.
+    """
     wishes = draft.wishes
     if wishes.idlers:
         bearing_wishes = (

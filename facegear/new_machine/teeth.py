@@ -65,12 +65,12 @@ class _Refusals:
     best_ratio: float = 0.0
 
     def add(self, reason: str) -> None:
-        """Count one more design refused for a reason."""
+        """Count one more candidate that was refused for this reason."""
         self.counts[reason] = self.counts.get(reason, 0) + 1
 
     @property
     def most_frequent(self) -> str:
-        """Reason for which most designs were refused."""
+        """Reason for which most candidates were refused."""
         return max(self.counts, key=lambda reason: self.counts[reason])
 
 
@@ -78,20 +78,23 @@ class _Refusals:
 def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH[0]) -> ChosenTeeth:
     """Return the highest teeth without undercut and interference that meet all wishes.
 
-    Candidates are tried from standard height downwards. Of each height, teeth with the gear's tips lowered
-    and with deeper pinion roots follow. The profile shift is the smallest one without undercut.
+    Candidates are tried from standard height downwards. Of each height, teeth with the gear's tips
+    lowered and with deeper pinion roots follow. The profile shift is the smallest one without undercut.
+    The first candidate is taken whose contact ratio is at least CONTACT_RATIO and whose smallest gap
+    beside the contact is at least SMALLEST_GAP modules. The search ends after MAX_ANALYSES analyses of
+    gaps.
 
     Parameters
     ----------
     wishes : ToothWishes
-        What a user gave.
+        Values that a user gave; None leaves a choice.
     more_shaper_teeth : int
-        Teeth of the shaper beyond those of the pinion, where the shaper is no wish.
+        Teeth of the shaper beyond those of the pinion, where the wishes have no number of shaper teeth.
 
     Returns
     -------
     ChosenTeeth
-        The teeth, with their analysis.
+        Design of the pair, radii (m) between which its face may lie, and its analysis.
 
     Raises
     ------
@@ -129,7 +132,11 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
 
 
 def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
-    """Name the geometric reason why no candidate is left."""
+    """Return the error for wishes that no candidate meets, with a reason.
+
+    The reason is interference if any candidate had it, else too small a contact ratio, else the most
+    frequent one.
+    """
     if "gap" in refusals.counts:
         reason = "the teeth of every candidate interfere; a larger pressure angle or more pinion teeth help"
     elif "contact ratio" in refusals.counts:
@@ -146,7 +153,7 @@ def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
 
 
 def _require_numbers(wishes: ToothWishes) -> None:
-    """Refuse numbers of teeth out of range."""
+    """Raise ConfigError for tooth numbers, module or pressure angle out of range."""
     if not 5 <= wishes.pinion_teeth <= 500:
         raise ConfigError("pinion_teeth", wishes.pinion_teeth, "from 5 to 500")
     if not wishes.pinion_teeth < wishes.face_gear_teeth <= 2000:
@@ -159,7 +166,11 @@ def _require_numbers(wishes: ToothWishes) -> None:
 
 
 def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDesign]:
-    """Yield designs of the teeth without a face yet, those with the highest teeth first."""
+    """Yield designs of the teeth in the order in which they are tried, the highest teeth first.
+
+    Each wish that is given takes the place of the choices. Widths and radii of the face are placeholders
+    of one module, which `_place_face` replaces.
+    """
     module = 1e-3 * wishes.module_mm
     thinning = THINNING * module if wishes.thinning_um is None else 1e-6 * wishes.thinning_um
     heights = _one_or(wishes.pinion_addendum_modules, HEIGHTS)
@@ -196,16 +207,23 @@ def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDes
 
 
 def _smallest_shift(teeth: int, pressure_angle_deg: float, dedendum: float, rack_tip: float) -> float:
-    """Smallest profile shift, in modules and not below 0, at which the rack does not undercut the pinion."""
+    """Return the smallest profile shift, not below 0, at which the rack does not undercut the pinion.
+
+    Shift, `dedendum` and tip radius `rack_tip` of the rack are in modules; the shift is rounded up to
+    SHIFT_STEP.
+    """
     sine = sin(radians(pressure_angle_deg))
     least = dedendum - rack_tip - (0.5 * teeth * sine - rack_tip) * sine
     return max(0.0, SHIFT_STEP * ceil(round(least / SHIFT_STEP, 9)))
 
 
 def _place_face(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[float, float]]:
-    """The design with its face as near to the pitch radius as the limits let it, and these limits, m.
+    """Return the design with its face as near to the pitch radius as the limits allow, and these limits,
+    m.
 
-    Raises GeometryError where the teeth cannot exist or leave less than NARROWEST modules.
+    The face is up to WIDEST modules wide and leaves FREE_ENDS of the allowed range free at either end.
+    Radii that the user gave go before. The pinion is a module wider at either end. Raises GeometryError
+    where the teeth cannot exist or less than NARROWEST modules are left.
     """
     check_shaper(design)
     limits = face_range(design, radius_limits(design))
@@ -246,17 +264,17 @@ def _one_or(wish: float | None, choices: tuple[float, ...]) -> tuple[float, ...]
 
 
 def chosen_keys(teeth: ChosenTeeth) -> dict[str, Any]:
-    """Return the values of the teeth, rounded as a config writes them.
+    """Return the numbers of chosen teeth under the names of the wishes, rounded as a config writes them.
 
     Parameters
     ----------
     teeth : ChosenTeeth
-        The teeth.
+        Teeth of `choose_teeth`.
 
     Returns
     -------
     dict[str, Any]
-        Values by the names of ToothWishes.
+        Values by the names of ToothWishes and `pinion_width_mm`, in modules, mm or um as the names say.
     """
     design = teeth.design
     module, pinion, gear, shaper = design.module, design.pinion, design.face_gear, design.shaper

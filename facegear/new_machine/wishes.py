@@ -75,7 +75,7 @@ class MachineWishes(ToothWishes):
 
     @property
     def teeth(self) -> ToothWishes:
-        """The wishes for the teeth alone."""
+        """Wishes for the teeth alone, by which chosen teeth are cached."""
         return ToothWishes(**{part.name: getattr(self, part.name) for part in fields(ToothWishes)})
 
 
@@ -118,12 +118,12 @@ RADIAL = ("input_bearing_n_per_m", "idler_bearing_n_per_m", "gear_bearing_n_per_
 
 
 def require_wishes(wishes: MachineWishes) -> None:
-    """Check each number that is wished by itself.
+    """Check each wished number by itself against the limits of the config key that it becomes.
 
     Parameters
     ----------
     wishes : MachineWishes
-        What a user gave.
+        Values that a user gave; None leaves a choice.
 
     Raises
     ------
@@ -149,19 +149,20 @@ def require_wishes(wishes: MachineWishes) -> None:
 
 
 def require_room(wishes: MachineWishes, design: PairDesign) -> None:
-    """Check that the pinions fit round the gear, the bore into the pinion, and the torque to the teeth.
+    """Check that all pinions fit round the gear, the bore into the pinion, and that the teeth bear the
+    torque.
 
     Parameters
     ----------
     wishes : MachineWishes
-        What a user gave.
+        Values that a user gave; None leaves a choice.
     design : PairDesign
-        The teeth chosen for it.
+        The teeth that were chosen for these wishes.
 
     Raises
     ------
     ConfigError
-        With the largest number that fits, or the largest torque.
+        For a number of pinions, a bore or a torque that is too large, with the largest one possible.
     """
     largest = tooth_limit(design, STEEL) / TORQUE_MARGINS[1]
     if wishes.torque_n_m > largest:
@@ -182,7 +183,7 @@ def require_room(wishes: MachineWishes, design: PairDesign) -> None:
 
 
 def _limits(section: type[Section], key: str) -> tuple[float, float]:
-    """Smallest and largest value that a key of the config allows."""
+    """Return the smallest and the largest value that a key of a config section allows, in the key's unit."""
     metadata = section.model_fields[key].metadata
     low = next(limit.ge for limit in metadata if hasattr(limit, "ge"))
     high = next(limit.le for limit in metadata if hasattr(limit, "le"))

@@ -39,12 +39,12 @@ KEYS = {
 
 
 def config_error(error: InvalidInput) -> ConfigError:
-    """Name the config key in the refusal of a quantity.
+    """Translate a refusal by a computation into one that names config keys, by KEYS.
 
     Parameters
     ----------
     error : InvalidInput
-        Refusal of a computation, in its own words.
+        Refusal by a computation, which names a quantity, and others in backquotes, in words.
 
     Returns
     -------
@@ -57,7 +57,8 @@ def config_error(error: InvalidInput) -> ConfigError:
 
 @contextmanager
 def keys_named() -> Iterator[None]:
-    """Raise ConfigError with the key where a computation refuses a quantity.
+    """Context or decorator in which InvalidInput of a computation becomes ConfigError with the config
+    key.
 
     Yields
     ------
@@ -103,7 +104,7 @@ SectionType = TypeVar("SectionType", bound=Section)
 
 
 def refuse(key: str, value: object, requirement: str) -> NoReturn:
-    """Refuse a value inside a validator.
+    """Refuse a value inside a validator of a section, whose error pydantic collects.
 
     Raises an error that the loader prints as `section.key = value: must be <requirement>`.
 
@@ -145,12 +146,12 @@ def require_all(*checks: Callable[[], None]) -> None:
 
 
 def _refuse_all(refusals: Sequence[tuple[str, object, str]]) -> NoReturn:
-    """Raise pydantic's error of several refused values."""
+    """Raise the pydantic error that holds refused values, each as key, value and requirement."""
     raise PydanticCustomError("refused", "refused", {"refused": list(refusals)})
 
 
 def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "config") -> SectionType:
-    """Validate plain values against a section model.
+    """Validate plain values against a section model, and return the section with its defaults filled in.
 
     Parameters
     ----------
@@ -159,7 +160,7 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
     values : Mapping[str, Any]
         Plain values, as read from YAML.
     source : str
-        What the error names as the origin of the values.
+        What the error names as the origin of the values, such as a file's name.
 
     Returns
     -------
@@ -184,7 +185,8 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
 
 
 def _with_likely_units(lines: list[str], values: Mapping[str, Any]) -> list[str]:
-    """The lines, those that a wrong unit elsewhere may have caused with a note of that value.
+    """Add to error lines the notes on values whose wrong unit may have caused them, in place, and return
+    them.
 
     A face width in m is refused because it is narrower than the gear's face, which alone says little.
     """
@@ -206,12 +208,15 @@ def _with_likely_units(lines: list[str], values: Mapping[str, Any]) -> list[str]
 
 
 def _refuse_value(value: object) -> NoReturn:
-    """Refuse a value that YAML reads as something else, such as a date."""
+    """Raise TypeError for a value that JSON cannot hold, such as a date without quotes in YAML."""
     raise TypeError(f"{value}: put text in quotes")
 
 
 def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[ErrorDetails]) -> list[str]:
-    """The lines of all mistakes; a misspelt key is not reported again as a missing one."""
+    """Return one line of text for each refused value, from pydantic's mistakes.
+
+    A misspelt key is not reported again as a missing one. All rules that one value breaks share a line.
+    """
     locations = [_location(details, values) for details in mistakes]
     intended_keys = [
         [*location[:-1], _nearest(model, location)]
@@ -231,7 +236,7 @@ def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[Error
 
 
 def _one_line(head: str, rules: Sequence[str]) -> str:
-    """One line for a value, whatever number of rules it breaks or kinds of value are allowed."""
+    """Return the line of one value: `head`, its key and value, then all different rules joined by `or`."""
     distinct = list(dict.fromkeys(rule for rule in rules if rule))
     if not distinct:
         return head
@@ -243,7 +248,7 @@ def _one_line(head: str, rules: Sequence[str]) -> str:
 def _is_other_kind(
     location: list[int | str], details: ErrorDetails, locations: list[list[int | str]]
 ) -> bool:
-    """Whether a mapping was given where text would do as well: its own keys are refused by name."""
+    """Whether a mistake only says that a mapping is no text, while keys inside it are refused by name."""
     if not isinstance(details["input"], Mapping) or details["type"] in ("refused", "missing"):
         return False
     depth = len(location)
@@ -251,12 +256,12 @@ def _is_other_kind(
 
 
 def _follows(details: ErrorDetails) -> bool:
-    """Whether a list is too short only without its items that were refused, each with a line of its own."""
+    """Whether a list is too short only without its refused items, each of which has a line of its own."""
     return details["type"] == "too_short" and len(details["input"]) >= details["ctx"]["min_length"]
 
 
 def _messages(model: type[Section], details: ErrorDetails, location: list[int | str]) -> list[str]:
-    """One line for each value that is refused."""
+    """Return the lines `key = value: must be ...` for one mistake that pydantic found."""
     kind = details["type"]
     if kind == "refused":
         section = _dotted(location)
@@ -314,7 +319,7 @@ RULES = {
 
 
 def _likely_unit(key: str, details: ErrorDetails) -> str:
-    """The unit that a number beyond a bound was likely given in, as the end of its line."""
+    """Return the end of a line on the unit that a number was likely given in; empty if none fits."""
     value, bounds = details["input"], details.get("ctx", {})
     if not isinstance(value, int | float):
         return ""
@@ -336,8 +341,8 @@ NEW_KEYS = {
 def suggestion(key: str, known_keys: Collection[str]) -> str:
     """Suggest in words what an unknown key should be.
 
-    A key of an earlier version gets its new name. Otherwise the most similar key is suggested, or else all
-    keys are listed.
+    A key of an earlier version gets its new name. Otherwise the most similar key is suggested, or else
+    all keys are listed.
 
     Parameters
     ----------
@@ -349,7 +354,7 @@ def suggestion(key: str, known_keys: Collection[str]) -> str:
     Returns
     -------
     str
-        The suggestion as part of a message.
+        The suggestion as the end of a message, such as "did you mean 'module_mm'?".
     """
     if (new_key := NEW_KEYS.get(key)) in known_keys:
         return f"`{key}` is now `{new_key}`"
@@ -358,7 +363,10 @@ def suggestion(key: str, known_keys: Collection[str]) -> str:
 
 
 def _location(details: ErrorDetails, values: Any) -> list[int | str]:
-    """Keys and list positions down to a mistake, without the names of types and models that pydantic adds."""
+    """Return keys and list positions down to a mistake, without names of types that pydantic adds.
+
+    `values` are the plain values that were validated, to tell keys from such names.
+    """
     named_by_user = details["type"] in ("extra_forbidden", "missing")
     location: list[int | str] = []
     for depth, part in enumerate(details["loc"], start=1):
@@ -375,7 +383,7 @@ def _location(details: ErrorDetails, values: Any) -> list[int | str]:
 
 
 def _is_union_tag(part: int | str) -> bool:
-    """The project's keys are lower case words; names of types and models are not."""
+    """Whether a part of a location is a type's or model's name: keys of a config are lower-case words."""
     return isinstance(part, str) and (part in _TYPE_NAMES or part[:1].isupper() or "[" in part or "-" in part)
 
 
@@ -398,19 +406,19 @@ def _value_text(value: Any) -> str:
 
 
 def _nearest(model: type[Section], location: list[int | str]) -> str | None:
-    """Return the known key that is nearest to an unknown one, if any is near."""
+    """Return the known key nearest in spelling to the last part of a location; None if none is near."""
     return _closest(str(location[-1]), _keys_at(model, location[:-1]))
 
 
 def _closest(key: str, keys: Iterable[str]) -> str | None:
-    """The allowed key that is spelt most alike; capitals and hyphens count for nothing."""
+    """Return the key spelt most like another, None if none is; capitals and hyphens do not count."""
     normalised_key = key.lower().replace("-", "_").replace(" ", "_")
     close = difflib.get_close_matches(normalised_key, sorted(keys), n=1, cutoff=0.6)
     return close[0] if close else None
 
 
 def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
-    """Return the keys that sections at a location may hold."""
+    """Return the keys that sections at a location, given from `model` down, may hold, unions included."""
     models = {model}
     for part in location:
         if isinstance(part, int):
@@ -421,7 +429,7 @@ def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
 
 
 def _models_in(annotation: Any) -> set[type[BaseModel]]:
-    """Return all sections in an annotation."""
+    """Return all section classes inside a type annotation: in unions, lists and mappings."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return {annotation}
     return {nested for part in get_args(annotation) for nested in _models_in(part)}

@@ -48,7 +48,9 @@ DIAMETRAL = (
 
 
 def _one_sided(one_side: float | None, diametral: float | None) -> float | None:
-    """Clearance of a bearing to each side of its centre, um."""
+    """Return the clearance of a bearing to each side of its centre, um: half the diametral one where that
+    is given.
+    """
     return one_side if diametral is None else 0.5 * diametral
 
 
@@ -83,7 +85,7 @@ class PinionBody(Section):
 
     @property
     def bearing_clearance_um(self) -> float:
-        """Clearance of the bearings to each side of their centre."""
+        """Clearance of the bearings to each side of their centre, um; 0 if not given."""
         return _one_sided(self.clearance_um, self.clearance_diametral_um) or 0.0
 
     @model_validator(mode="after")
@@ -188,7 +190,7 @@ class SinglePinion(Section):
 
     @property
     def bearing_clearance_um(self) -> float | None:
-        """Clearance of the bearings to each side of their centre; null: that of all pinions."""
+        """Clearance of the bearings to each side of their centre, um; None: that of all pinions."""
         return _one_sided(self.clearance_um, self.clearance_diametral_um)
 
     @model_validator(mode="after")

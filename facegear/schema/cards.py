@@ -17,9 +17,10 @@ from facegear.schema.yaml_file import read_yaml
 def read_card(model: type[Section], value: Any, folder: Path) -> Any:
     """Read the card that a config value names, for a validator that runs before that of the type.
 
-    A text without an ending is the name of a card in `folder`, whatever path the config's loader put before
-    it. Any other text is a yaml file, and a mapping is the card itself. Anything else is handed back. A
-    mistake in the card is refused here, so that it is reported with all other mistakes before any work.
+    A text without an ending is the name of a card in `folder`, whatever path the config's loader put
+    before it. Any other text is a yaml file, and a mapping is the card itself. Anything else is handed
+    back. A mistake in the card is refused here, so that it is reported with all other mistakes before any
+    work.
 
     Parameters
     ----------
@@ -45,7 +46,9 @@ def read_card(model: type[Section], value: Any, folder: Path) -> Any:
 
 
 def _file(name: str, folder: Path) -> Path:
-    """Return the path of a card: a file of the user, or one of the package's by its name."""
+    """Return the path of a card: the user's file if the name has an ending, else the package's card of
+    this name.
+    """
     path = Path(name)
     if path.suffix:
         return path

@@ -42,7 +42,7 @@ def variable_part(
     speed_rpm: float,
     lubrication: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Collect the plain config values that may change from machine to machine.
+    """Collect the plain config values that may change from sample to sample or design to design.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def variable_part(
     Returns
     -------
     dict[str, Any]
-        The values under the keys that they have in a config.
+        Values under transmission, tooth_pair, dynamics.speed_rpm and lubrication, not copied.
     """
     return {
         "transmission": transmission,
@@ -69,7 +69,7 @@ def variable_part(
 
 
 def without(values: Any, key: str) -> Any:
-    """Copy nested mappings without one dotted key.
+    """Return nested mappings without one dotted key; a key that does not exist changes nothing.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def without(values: Any, key: str) -> Any:
     Returns
     -------
     Any
-        The copy.
+        A copy along the path of the key; the rest is shared.
     """
     first, _, rest = key.partition(".")
     if not isinstance(values, Mapping) or first not in values:
@@ -91,7 +91,7 @@ def without(values: Any, key: str) -> Any:
 
 
 def moves_pair(keys: Iterable[str]) -> bool:
-    """Whether one of the dotted keys belongs to the tooth pair.
+    """Whether at least one of the dotted keys lies in section `tooth_pair`.
 
     Parameters
     ----------
@@ -112,20 +112,20 @@ def movable(
     prefixes: Iterable[str] = (MACHINE, SPEED, PAIR, LUBRICATION),
     refused_key: str = "tolerances.causes.moves",
 ) -> dict[str, Any]:
-    """Prepare config values for changes of single keys.
+    """Prepare config values so that numbers at some dotted keys can be changed, and check the keys.
 
-    Every single part that one of the keys names gets an entry of its own. Values that the entry leaves open
-    are filled with those of all parts. Where a key is a clearance to each side, clearances given from side to
-    side become clearances to each side.
+    Every single part that one of the keys names gets an entry of its own. Values that the entry leaves
+    open are filled with those of all parts. Where a key is a clearance to each side, clearances given
+    from side to side become clearances to each side.
 
     Parameters
     ----------
     values : Mapping[str, Any]
         Result of `variable_part`.
     keys : Iterable[str]
-        Dotted keys that will change.
+        Dotted keys that will change, such as `transmission.single_pinions.idler 1.position_um.x`.
     prefixes : Iterable[str]
-        Texts of which a key must begin with one.
+        Beginnings of keys that may change.
     refused_key : str
         Key of the config that an error names.
 
@@ -185,9 +185,10 @@ def add_changes(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict
 
 
 def _own_copy(values: dict[str, Any], path: str, copies: dict[str, Any]) -> Any:
-    """Return the part of the values at a dotted path, copied with everything that contains it.
+    """Return the part of the values at a dotted path as a copy that may be changed.
 
-    `copies` holds the copies made so far, by path.
+    Everything that contains it is copied into `values`, too, the rest stays shared. `copies` has the
+    copies made so far, by path, and gets the new ones.
     """
     if not path:
         return values
@@ -201,7 +202,7 @@ def _own_copy(values: dict[str, Any], path: str, copies: dict[str, Any]) -> Any:
 
 
 def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
-    """Return the number that several keys have in common.
+    """Return the nominal number that several dotted keys have in common.
 
     Parameters
     ----------
@@ -247,14 +248,18 @@ def set_numbers(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict
 
 
 def _to_each_side(transmission: Mapping[str, Any]) -> None:
-    """Turn diametral clearances into one-sided ones, in place."""
+    """Replace diametral clearances of pinions by half of them under the one-sided key, in place."""
     for part in (transmission["pinion"], *transmission["single_pinions"].values()):
         if part.get(DIAMETRAL) is not None:
             part |= {ONE_SIDE: 0.5 * part[DIAMETRAL], DIAMETRAL: None}
 
 
 def _enter(section: dict[str, Any], parts: list[str]) -> None:
-    """Give the named part an entry that says what all parts of its kind have."""
+    """Give a single part an entry of its own with the value that all parts of its kind have, in place.
+
+    `parts` begins with the section of single parts, the part's name and the field. A value that is there
+    stays.
+    """
     kind, name, field = parts[:3]
     entry = section[kind].setdefault(name, {})
     if entry.get(field) is not None:
@@ -267,7 +272,10 @@ def _enter(section: dict[str, Any], parts: list[str]) -> None:
 
 
 def _holder(values: Any, parts: list[str]) -> tuple[Any, Any]:
-    """The mapping or list that holds the last part of a dotted key, and that part as its index."""
+    """Return the mapping or list that holds the last part of a dotted key, and that part as key or index.
+
+    The holder is None where a part before it does not exist.
+    """
     for part in parts[:-1]:
         index = _index_of(values, part)
         values = values[index] if _has(values, index) else None
@@ -275,12 +283,12 @@ def _holder(values: Any, parts: list[str]) -> tuple[Any, Any]:
 
 
 def _index_of(values: Any, part: str) -> str | int:
-    """Return a part of a key as an index where the values are a list."""
+    """Return a part of a dotted key: as a number where `values` are a list, else as it is."""
     return int(part) if isinstance(values, list | tuple) and part.isdecimal() else part
 
 
 def _has(values: Any, index: str | int) -> bool:
-    """Whether values hold a key or an index."""
+    """Whether a mapping holds a key, or a list an index; False for any other values."""
     if isinstance(values, dict):
         return index in values
     return isinstance(values, list) and isinstance(index, int) and index < len(values)

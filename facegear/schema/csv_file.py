@@ -51,12 +51,13 @@ def read_numbers(path: str | Path, columns: Sequence[str], unread: Sequence[str]
     Returns
     -------
     list[CsvRow]
-        The rows.
+        Line number and finite numbers by column of each row.
 
     Raises
     ------
     CsvFault
-        With the line, or any other column.
+        For a file that cannot be read, a column that is missing or unknown, or a value that is no finite
+        number.
     """
     return [row for row, _ in read_table(path, columns, unread=unread).rows]
 
@@ -68,7 +69,9 @@ def read_table(
     optional: Sequence[str] = (),
     unread: Sequence[str] = (),
 ) -> CsvTable:
-    """Return finite numbers and texts of the named columns, row by row.
+    """Read finite numbers and texts of named columns from a csv file, row by row.
+
+    Lines that begin with # before the column names are remarks.
 
     Parameters
     ----------
@@ -86,12 +89,13 @@ def read_table(
     Returns
     -------
     CsvTable
-        Remarks and rows.
+        Texts of the remarks, and for each row its line number with numbers and its texts, by column.
 
     Raises
     ------
     CsvFault
-        With the line, or any other column.
+        For a file that cannot be read, a column that is missing or unknown, or a value that is no finite
+        number.
     """
     content = _text(Path(path)).splitlines()
     first = next((number for number, line in enumerate(content) if not line.startswith("#")), len(content))
@@ -114,7 +118,7 @@ def read_table(
 
 
 def column_names(path: str | Path) -> list[str]:
-    """Return the names in the first line that is no remark.
+    """Return the column names of a csv file: the first line that does not begin with #.
 
     Parameters
     ----------
@@ -162,7 +166,9 @@ def _check_header(
 def _row(
     line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str], texts: Sequence[str]
 ) -> tuple[CsvRow, dict[str, str]]:
-    """Return one line's numbers and texts by column."""
+    """Return the line number with its finite numbers, and its texts, both by column; CsvFault for a bad
+    line.
+    """
     if len(cells) != len(header):
         raise CsvFault(
             f"line {line}: {count_noun(len(cells), 'value')} under {count_noun(len(header), 'column name')}"
@@ -173,7 +179,7 @@ def _row(
 
 
 def _number(line: int, name: str, text: str) -> float:
-    """Return a cell as a finite number."""
+    """Return the text of a cell as a finite number; CsvFault, with line and column, if it is none."""
     try:
         value = float(text)
     except ValueError:
@@ -230,7 +236,9 @@ class _Point(NamedTuple):
 
 
 def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
-    """Read the flanks of one body as keys `pitch_and_thickness` and `grids` of section `flanks`.
+    """Read the measured flanks of one body from a csv file, for section `flanks`.
+
+    Rows of the other body are passed over. Places of a flank must fill a grid, in any order.
 
     Parameters
     ----------
@@ -242,7 +250,8 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Plain values of both keys.
+        Key `pitch_and_thickness`, from the remark of the file, and key `grids`, a list with one grid for
+        each tooth and flank.
 
     Raises
     ------
@@ -276,7 +285,7 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
 
 
 def _header(remarks: Iterable[str]) -> str:
-    """Return what the remarks of a file say of the pitch deviations: included or left out."""
+    """Return what the remarks of a flank file say of pitch and thickness, as the config's key has it."""
     for remark in remarks:
         name, _, remark_value = remark.partition(":")
         if name.strip() == HEADER:
@@ -314,7 +323,10 @@ def _check_unit(grids: Mapping[Any, Mapping[Any, _Point]]) -> None:
 
 
 def _grid(tooth: int | None, flank: str, points: Mapping[tuple[float, float], _Point]) -> dict[str, Any]:
-    """Return the grid section of one flank; refuse a grid with missing points."""
+    """Return the grid section of one tooth's flank from its points by (face, profile), mm.
+
+    Both axes rise. Raises CsvFault where a place is missing.
+    """
     faces, profiles = (sorted({at[axis] for at in points}) for axis in (0, 1))
     for face in faces:
         for profile in profiles:

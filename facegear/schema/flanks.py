@@ -113,7 +113,11 @@ def read_files(values: Any) -> Any:
 
 
 def _read(values: Mapping[str, Any], body: str) -> dict[str, Any]:
-    """Read the grids of a flank file where a file is given."""
+    """Return section `flanks` with the grids of its csv file in place of the file's name, if it names
+    one.
+
+    Lists become tuples. A fault is refused under the key of the body's file.
+    """
     read = dict(values)
     if isinstance(name := values.get("file"), str):
         if values.get("grids"):
@@ -130,7 +134,7 @@ def _read(values: Mapping[str, Any], body: str) -> dict[str, Any]:
 
 
 def _tupled(value: Any) -> Any:
-    """Turn lists into tuples, inside mappings as well."""
+    """Return nested values with all lists as tuples."""
     if isinstance(value, Mapping):
         return {key: _tupled(item) for key, item in value.items()}
     return tuple(_tupled(item) for item in value) if isinstance(value, list | tuple) else value

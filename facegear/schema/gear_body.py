@@ -115,7 +115,7 @@ class BodySection(Section):
     @model_validator(mode="before")
     @classmethod
     def _from_file(cls, values: Any) -> Any:
-        """The corners of the file `corners_csv` or `step`."""
+        """Replace the file `corners_csv` or `step` by the corners read from it, mm, and lists by tuples."""
         if not isinstance(values, dict):
             return values
         if isinstance(values.get("corners_mm"), list):
@@ -141,7 +141,9 @@ class BodySection(Section):
 
     @property
     def damping(self) -> tuple[float, float]:
-        """Damping ratio of every mode, and the factor beta (s) of the stiffness in the damping."""
+        """Damping ratio of every mode, and factor beta (s) of the stiffness in the damping; one of both
+        is 0.
+        """
         if self.stiffness_damping_s is not None:
             return 0.0, self.stiffness_damping_s
         return DAMPING_RATIO if self.damping_ratio is None else self.damping_ratio, 0.0
@@ -183,7 +185,7 @@ class BodySection(Section):
 
 
 def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
-    """Read the corners of a section from a csv file, mm."""
+    """Read the corners of a section from a csv file: distance from the axis and height, mm."""
     try:
         rows = read_numbers(name, COLUMNS)
     except CsvFault as fault:
@@ -192,7 +194,7 @@ def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
 
 
 def _step_corners(name: str) -> tuple[tuple[float, float], ...]:
-    """Read the corners of a section from a STEP file, mm."""
+    """Read the corners of a section from a STEP file: distance from the axis and height, mm."""
     from facegear.io.step_section import StepFault, read_section  # loads gmsh
 
     requirement = "a STEP file of one solid of revolution, or of its half section"

@@ -68,7 +68,7 @@ class ExpectedSize:
 
 
 def plausibility_notes(values: Mapping[str, Any]) -> list[str]:
-    """One line for every value that lies far from its expected size.
+    """Return one line for every value that lies beyond FAR times its usual size, likely in a wrong unit.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def plausibility_notes(values: Mapping[str, Any]) -> list[str]:
 
 
 def expected_sizes(values: Mapping[str, Any]) -> list[ExpectedSize]:
-    """Values of a config that have an expected size, without zeros.
+    """List the values of a config that have a usual size by its teeth, zeros left out.
 
     Parameters
     ----------
@@ -94,7 +94,8 @@ def expected_sizes(values: Mapping[str, Any]) -> list[ExpectedSize]:
     Returns
     -------
     list of ExpectedSize
-        Empty for a config without tooth numbers and module.
+        Key, value, and lower and upper usual size in the key's unit; empty without tooth numbers and
+        module.
     """
     teeth = _Teeth.of_values(values)
     if teeth is None:
@@ -104,12 +105,13 @@ def expected_sizes(values: Mapping[str, Any]) -> list[ExpectedSize]:
 
 
 def unit_suggestion(key: str, value: float, low: float | None, high: float | None) -> str:
-    """Unit with which a number would lie between two bounds of its key, as the end of a line.
+    """Suggest the unit in which a number, refused by its bounds, would lie between them.
 
     Parameters
     ----------
     key : str
-        Dotted key that ends with its unit; what follows the unit, such as ``.x`` or ``[0]``, does not count.
+        Dotted key that ends with its unit; what follows the unit, such as ``.x`` or ``[0]``, does not
+        count.
     value : float
         The number, in the unit of the key.
     low, high : float or None
@@ -133,13 +135,13 @@ def unit_suggestion(key: str, value: float, low: float | None, high: float | Non
 
 
 def _is_far(size: ExpectedSize) -> bool:
-    """Whether a value lies beyond FAR times its usual range; rigid springs are free."""
+    """Whether a value lies beyond FAR times its usual range; stiffness from RIGID on counts as meant."""
     is_rigid = _suffix(size.key, UNITS) == "_n_per_m" and size.value >= RIGID
     return not is_rigid and not size.low / FAR <= abs(size.value) <= size.high * FAR
 
 
 def _note(size: ExpectedSize) -> str:
-    """Say in words that a value is unusual, and which unit may be meant."""
+    """Return a line with key, value, usual size and, if one fits, the unit that was likely meant."""
     unit = UNITS[_suffix(size.key, UNITS)]
     low, high = (f"{float(f'{bound:.2g}'):g}" for bound in (size.low, size.high))
     usual = low if low == high else f"{low} to {high}"
@@ -148,7 +150,9 @@ def _note(size: ExpectedSize) -> str:
 
 
 def _suffix(key: str, endings: Mapping[str, Any]) -> str:
-    """The ending of a key that names its unit; empty if there is none."""
+    """Return which of the endings, such as `_mm`, one of the last two parts of a dotted key has; empty if
+    none.
+    """
     names = [part.partition("[")[0] for part in key.split(".")]
     for name in reversed(names[-2:]):
         for ending in endings:
@@ -169,7 +173,12 @@ class _Teeth:
 
     @classmethod
     def of_values(cls, values: Mapping[str, Any]) -> "_Teeth | None":
-        """The teeth of a config; None where they are not given."""
+        """Return the teeth of a config in SI units; None where tooth numbers or module are missing or
+        absurd.
+
+        A face width far from USUAL_FACE_MODULES modules is replaced by that, a missing pressure angle by
+        25 deg.
+        """
         numbers = {
             key: _number(values, f"tooth_pair.{key}") or 0.0
             for key in ("module_mm", "pinion_teeth", "face_gear_teeth", "pressure_angle_deg")
@@ -198,27 +207,33 @@ class _Teeth:
 
     @property
     def pinion(self) -> tuple[float, float]:
-        """Mass, kg, and inertia, kg m2, of a pinion without bore."""
+        """Mass (kg) and moment of inertia about the axis (kg m2) of a steel pinion without bore."""
         mass = STEEL * pi * self.pinion_radius**2 * (self.face + 2.0 * self.module)
         return mass, 0.5 * mass * self.pinion_radius**2
 
     @property
     def gear(self) -> tuple[float, float]:
-        """Mass, kg, and inertia, kg m2, of the toothed ring of a face gear."""
+        """Mass (kg) and moment of inertia about the axis (kg m2) of the toothed steel ring of a face
+        gear.
+        """
         height = (RIM_MODULES + 2.25) * self.module
         mass = STEEL * 2.0 * pi * self.gear_radius * self.face * height
         return mass, mass * self.gear_radius**2
 
     @property
     def damping(self) -> float:
-        """Damping of a mesh, N s/m."""
+        """Usual damping of a mesh, N s/m: DAMPING_RATIO of the critical one of pinion and gear on the
+        mesh stiffness.
+        """
         bodies = ((self.pinion, self.pinion_radius), (self.gear, self.gear_radius))
         mass = 1.0 / sum((self.cosine * radius) ** 2 / inertia for (_, inertia), radius in bodies)
         return 2.0 * DAMPING_RATIO * sqrt(self.mesh_stiffness * mass)
 
 
 def _pair_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
-    """Yield values of section tooth_pair with their usual sizes."""
+    """Yield values of sections tooth_pair and lubrication with their usual sizes, in the units of their
+    keys.
+    """
     module, radius = 1e3 * teeth.module, 1e3 * teeth.gear_radius
     yield from _sizes(
         values,
@@ -236,7 +251,9 @@ def _pair_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSi
 
 
 def _contact_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
-    """Torques and stiffness of one mesh; of a list of torques the largest counts."""
+    """Yield torques (N m) and stiffness (N/m) of one mesh with usual sizes; of a list the largest torque
+    counts.
+    """
     usual = {
         "mesh_stiffness.torque_n_m": teeth.mesh_torque,
         "mesh_stiffness.mean_n_per_m": teeth.mesh_stiffness,
@@ -258,7 +275,7 @@ def _contact_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expecte
 
 
 def _machine_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
-    """Yield values of section transmission with their usual sizes."""
+    """Yield values of section transmission with their usual sizes, in the units of their keys."""
     machine = values.get("transmission")
     if not isinstance(machine, Mapping):
         return
@@ -292,7 +309,7 @@ def _machine_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expecte
 
 
 def _shaft_sizes(machine: Mapping[str, Any], teeth: _Teeth) -> Iterator[ExpectedSize]:
-    """Yield stiffness of shaft bearings with its usual sizes."""
+    """Yield radial and axial stiffness (N/m) of the bearings of shafts with its usual range."""
     for name in _names(machine, "shafts"):
         shaft = machine["shafts"][name]
         for number, bearing in enumerate(_items(shaft, "bearings") if isinstance(shaft, Mapping) else ()):
@@ -304,13 +321,13 @@ def _shaft_sizes(machine: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expected
 
 
 def _spring(teeth: _Teeth) -> tuple[float, float]:
-    """Return the usual range of a bearing's stiffness, N/m."""
+    """Return the usual range of a bearing's stiffness, N/m: BEARINGS times the mesh stiffness."""
     soft, stiff = BEARINGS
     return soft * teeth.mesh_stiffness, stiff * teeth.mesh_stiffness
 
 
 def _sizes(values: Mapping[str, Any], usual: Mapping[str, float]) -> Iterator[ExpectedSize]:
-    """Yield the numbers that are given, with their usual size."""
+    """Yield the number at each dotted key of `usual` that the config gives, with its usual size."""
     for key, size in usual.items():
         value = _number(values, key)
         if value is not None:
@@ -320,7 +337,12 @@ def _sizes(values: Mapping[str, Any], usual: Mapping[str, float]) -> Iterator[Ex
 def _size(
     values: Mapping[str, Any], section: str, parts: tuple[str, ...], low: float, high: float | None = None
 ) -> Iterator[ExpectedSize]:
-    """The size at a key whose parts may hold dots, as names of pinions do."""
+    """Yield the number at a key below a section, if there is one, with its usual range from `low` to
+    `high`.
+
+    The parts of the key are separate, as names of pinions may hold dots. Without `high` the usual size is
+    `low`.
+    """
     inside: Any = _at(values, section)
     for part in parts:
         inside = inside.get(part) if isinstance(inside, Mapping) else None
@@ -348,12 +370,14 @@ def _is_number(value: Any) -> bool:
 
 
 def _items(values: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
-    """Return the mappings of the list at a dotted key."""
+    """Return the mappings in the list at a dotted key; an empty list where there is none."""
     items = _at(values, key)
     return [item for item in items if isinstance(item, Mapping)] if isinstance(items, list | tuple) else []
 
 
 def _names(machine: Mapping[str, Any], key: str) -> list[str]:
-    """Return the names in a mapping below a section."""
+    """Return the keys of the mapping at one key of a section, such as names of pinions; empty without
+    one.
+    """
     section = machine.get(key)
     return list(section) if isinstance(section, Mapping) else []

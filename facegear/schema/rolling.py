@@ -71,7 +71,11 @@ class RollingSection(Section):
     @model_validator(mode="before")
     @classmethod
     def _read_card(cls, values: Any) -> Any:
-        """Fill in the keys of a card; keys that are given go before them."""
+        """Return the values with the keys of the card that they name filled in; keys that are given go
+        before.
+
+        A text alone is the name of a card: one of the package, or with an ending a yaml file.
+        """
         by_key = {"card": values} if isinstance(values, str) else values
         if not isinstance(by_key, Mapping) or "card" not in by_key:
             return by_key
@@ -85,10 +89,12 @@ class RollingSection(Section):
 
     @model_validator(mode="after")
     def _can_be(self) -> "RollingSection":
+        """Check keys, pitch diameter and clearance; all mistakes are reported together."""
         require_all(self._check_keys, self._check_pitch, self._check_clearance)
         return self
 
     def _check_keys(self) -> None:
+        """Refuse keys that a bearing of this type does not have, and those that it needs and lacks."""
         for key, types in KEYS_OF_TYPES.items():
             value = getattr(self, key)
             if value is not None and self.type not in types:
@@ -100,12 +106,14 @@ class RollingSection(Section):
                 refuse(key, None, f"given for a bearing of type {self.type}")
 
     def _check_pitch(self) -> None:
+        """Refuse a pitch diameter on which neighbouring elements would overlap."""
         least = self.element_diameter_mm / sin(pi / self.elements)
         if self.pitch_diameter_mm < least:
             requirement = f"at least {least:.6g} mm, or its {self.elements} elements overlap"
             refuse("pitch_diameter_mm", self.pitch_diameter_mm, requirement)
 
     def _check_clearance(self) -> None:
+        """Refuse a clearance of 0.02 element diameters or more in size."""
         largest = 20.0 * self.element_diameter_mm
         if abs(self.clearance_diametral_um) >= largest:
             requirement = f"smaller than 0.02 element_diameter_mm, which is {largest:g} um"

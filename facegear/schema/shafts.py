@@ -92,12 +92,13 @@ class ShaftBearing(Section):
             refuse("matrix", self.matrix, "such that it resists every motion: no negative eigenvalue")
 
     def stiffness(self) -> Array:
-        """Return the stiffness matrix of the bearing.
+        """Return the stiffness matrix of the bearing: the given one, else diagonal from its single
+        stiffnesses.
 
         Returns
         -------
         (5, 5) array
-            Stiffness in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
+            Forces and moments over displacements in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
         """
         if self.matrix is not None:
             return np.array(self.matrix, float)
@@ -127,12 +128,12 @@ class ShaftSection(Section):
 
     @property
     def length_mm(self) -> float:
-        """From end to end; decimals of the segments that rounding adds up are none of it."""
+        """Sum of the lengths of all segments, mm, rounded to 9 decimals against rounding errors."""
         return round(sum(segment.length_mm for segment in self.segments), 9)
 
     @property
     def is_round(self) -> bool:
-        """Whether every bearing gives way alike in all directions across."""
+        """Whether every bearing is equally stiff in all radial directions: none is given by a matrix."""
         return all(bearing.matrix is None for bearing in self.bearings)
 
     @model_validator(mode="after")

@@ -111,7 +111,11 @@ class MeshStiffness(Section):
     @model_validator(mode="before")
     @classmethod
     def _read(cls, values: Any) -> Any:
-        """A csv is read here, so that a fault in it is reported with all others before any work."""
+        """Replace the file `csv` by the table of harmonics read from it, so that faults are reported
+        before any work.
+
+        A curve over the pinion's angle also sets the pitch that it covers, deg.
+        """
         if not isinstance(values, Mapping):
             return values
         if isinstance(values.get("table"), list):
@@ -156,13 +160,13 @@ class MeshStiffness(Section):
 
     @property
     def mean(self) -> float | None:
-        """The mean that is given, N/m: by its key, or by order 0 of the harmonics."""
+        """Mean stiffness that is given, N/m: order 0 of the harmonics, else the key; None without both."""
         zeroth = self.table[0].cos_n_per_m if self.table and self.table[0].order == 0 else None
         return self.mean_n_per_m if zeroth is None else zeroth
 
 
 def given_series(section: MeshStiffness) -> Harmonics:
-    """Return the series written in the config, its mean included.
+    """Return the Fourier series of the mesh stiffness written in the config, its mean included.
 
     Parameters
     ----------
@@ -209,8 +213,9 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
 
 
 def _read_csv(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
-    """Read rows of `table` from a csv file of orders, or from one over the pinion's angle, with the pitch it
-    covers.
+    """Read rows of `table` from a csv file of harmonics, or from a curve over the pinion's angle.
+
+    Returns the rows and, for a curve, the pitch (deg) that it covers, else None.
     """
     if CURVE[0] in column_names(name):
         return _of_curve(read_numbers(name, CURVE))
@@ -218,7 +223,12 @@ def _read_csv(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
 
 
 def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], float]:
-    """Return rows of `table` from rows over the angle, and the pitch (deg) that they cover."""
+    """Return rows of `table` from a stiffness curve over the pinion's angle, and the pitch (deg) that it
+    covers.
+
+    The curve has even steps from 0, without the end of the pitch. Its Fourier series is exact at the
+    points.
+    """
     angle, stiffness = (np.array([row.values[column] for row in curve]) for column in CURVE)
     if not 4 <= len(curve) <= 2 * MAX_ORDER:
         raise CsvFault(f"it must have from 4 to {2 * MAX_ORDER} rows over the pitch, not {len(curve)}")
@@ -238,7 +248,9 @@ def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], floa
 
 
 def _harmonics(rows: Sequence[CsvRow]) -> tuple[dict[str, Any], ...]:
-    """Rows of `table` from those of a csv, in any order there."""
+    """Return rows of `table` (order, sine and cosine in N/m), sorted by order, from the rows of a csv
+    file.
+    """
     lines: dict[int, int] = {}
     table = []
     for row in rows:

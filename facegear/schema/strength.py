@@ -100,13 +100,15 @@ class Strength(Section):
         return self
 
     def _check_factors(self) -> None:
-        """Load factors are either given or taken from the machine."""
+        """Refuse load factors that are given although they are taken from the machine."""
         for key in ("dynamic_factor", "mesh_load_factor"):
             if self.load_factors == "machine" and getattr(self, key) != 1.0:
                 refuse(key, getattr(self, key), "left out where load_factors is machine")
 
     def _check_counted(self) -> None:
-        """Check that the loading of flanks is either given or counted in the machine."""
+        """Refuse cycles a turn and loading both ways that are given although they are counted in the
+        machine.
+        """
         for name in BODIES:
             for key in ("cycles_per_turn", "both_ways"):
                 if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):
@@ -132,13 +134,15 @@ class Strength(Section):
 
     @property
     def torques(self) -> tuple[float, float]:
-        """Smallest and largest of the duty cycle with all factors, N m; bins without hours do not count."""
+        """Smallest and largest torque of the duty cycle with all given factors, N m; bins without hours
+        do not count.
+        """
         loads = [self.factor * load.torque_n_m for load in self.duty if load.hours > 0]
         return min(loads), max(loads)
 
     @property
     def factor(self) -> float:
-        """Product K_A K_v K_gamma of the load factors that the config gives; factors of the machine are left
-        out.
+        """Product K_A K_v K_gamma of the load factors that the config gives; factors of the machine are
+        left out.
         """
         return self.application_factor * self.dynamic_factor * self.mesh_load_factor

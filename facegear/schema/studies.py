@@ -61,12 +61,14 @@ class ObjectiveSection(Section):
 
     @property
     def large(self) -> bool:
-        """Whether the objective is to be large, not small."""
+        """Whether larger values are better: the goal is given by `smallest_of`."""
         return bool(self.smallest_of)
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Quantities of which the largest, or smallest, counts."""
+        """Beginnings of the names of quantities of which the worst counts: the smallest if `large`, else
+        the largest.
+        """
         return self.smallest_of or self.largest_of
 
     @model_validator(mode="after")
@@ -160,7 +162,7 @@ class Search(Section):
 
     @property
     def robust(self) -> bool:
-        """Whether some objective or constraint is a percentile."""
+        """Whether some objective or constraint is a percentile over samples of the tolerances."""
         return any(goal.percentile is not None for goal in (*self.objectives, *self.constraints))
 
     @model_validator(mode="after")
@@ -232,12 +234,13 @@ class Axis(Section):
         return self
 
     def study_points(self) -> tuple[StudyPoint, ...]:
-        """Return the points of the axis; those of a key take its values as labels.
+        """Return the points of the axis: as given, or one for each value of its key, labelled by the
+        value.
 
         Returns
         -------
         tuple[StudyPoint, ...]
-            The points.
+            Label and new values by dotted key of each point.
         """
         if self.key:
             return tuple(StudyPoint(label=f"{value}", set={self.key: value}) for value in self.values)
@@ -264,7 +267,7 @@ class Axis(Section):
 
 
 def common_key(first: Iterable[str], second: Iterable[str]) -> str | None:
-    """Find a dotted key of `second` that is, holds or stands in one of `first`.
+    """Find a dotted key of `second` that equals, contains or lies inside one of `first`.
 
     Parameters
     ----------
@@ -285,12 +288,12 @@ def common_key(first: Iterable[str], second: Iterable[str]) -> str | None:
 
 
 def _same_place(key: str, other_key: str) -> bool:
-    """Whether one dotted key is the other or holds it."""
+    """Whether two dotted keys are equal or one holds the other."""
     return f"{key}.".startswith(f"{other_key}.") or f"{other_key}.".startswith(f"{key}.")
 
 
 def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values, also of whole sections."""
+    """Yield dotted key and value of everything inside nested mappings; an empty mapping is a value."""
     for key, value in values.items():
         if isinstance(value, Mapping) and value:
             yield from ((f"{key}.{inner}", leaf) for inner, leaf in _leaves(value))

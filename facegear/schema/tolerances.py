@@ -125,7 +125,7 @@ class LoadMap(Section):
         return self
 
     def loads(self, speed_rpm: float) -> list[tuple[float, float]]:
-        """Return the points of the load map.
+        """Return the points of the load map: every torque factor with every speed.
 
         Parameters
         ----------
@@ -237,14 +237,14 @@ Design = Literal["samples", "indices"]
 
 
 def sizes(section: Tolerances, design: Design) -> int:
-    """Return the number of samples of a design.
+    """Return the number of samples of a sampling design.
 
     Parameters
     ----------
     section : Tolerances
         Section `tolerances` of the config.
     design : Design
-        `samples` or `indices`.
+        `samples`: plain samples. `indices`: blocks of Saltelli's design, of causes + 2 samples each.
 
     Returns
     -------
@@ -255,7 +255,7 @@ def sizes(section: Tolerances, design: Design) -> int:
 
 
 def chunks(section: Tolerances, design: Design) -> list[tuple[int, int]]:
-    """Return the chunks of a design.
+    """Divide the samples of a sampling design into chunks, one job each.
 
     Parameters
     ----------
@@ -267,13 +267,13 @@ def chunks(section: Tolerances, design: Design) -> list[tuple[int, int]]:
     Returns
     -------
     list[tuple[int, int]]
-        Numbers of the first and last sample of each chunk.
+        Numbers of the first and last sample of each chunk, from 0, both included.
     """
     return chunk_ranges(sizes(section, design), section.chunk_samples)
 
 
 def chunk_ranges(size: int, step: int) -> list[tuple[int, int]]:
-    """Divide numbered samples into chunks.
+    """Divide samples, numbered from 0, into chunks; the last one may be shorter.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def chunk_ranges(size: int, step: int) -> list[tuple[int, int]]:
     Returns
     -------
     list[tuple[int, int]]
-        Numbers of the first and last sample of each chunk.
+        Numbers of the first and last sample of each chunk, both included.
     """
     return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 

@@ -102,7 +102,10 @@ class TransmissionError(Section):
 
 
 def error_series(section: TransmissionError, unloaded_error: Harmonics | None = None) -> Harmonics:
-    """Return the transmission error of the reference mesh as a Fourier series.
+    """Return the transmission error of the reference mesh over a mesh cycle as a Fourier series.
+
+    A given error is a sum of amplitude cos(order w t + phase_deg) with the mesh frequency w; with
+    `meaning: range` the amplitude of order 1 is half of the number given.
 
     Parameters
     ----------

@@ -32,10 +32,10 @@ _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 
 
 def read_yaml(path: str | Path) -> dict[str, Any]:
-    """Read a YAML mapping.
+    """Read a YAML file that holds a mapping, such as a config or a card.
 
-    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags that stand
-    for program objects, and files beyond the bounds above are refused.
+    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags that
+    stand for program objects, and files beyond the bounds above are refused.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        The values by their keys.
+        The nested values by their keys, not validated.
 
     Raises
     ------

@@ -40,12 +40,12 @@ class SearchedMachine(VariedMachine):
 
     @property
     def values(self) -> dict[str, Any]:
-        """Plain values of the config that variables may change."""
+        """Plain values of `variable_part` that variables may change: transmission, tooth pair and speed."""
         return variable_part(self.transmission, self.tooth_pair, self.speed_rpm)
 
 
 def task(section: Search) -> Task:
-    """Return variables, objectives and limits of a search.
+    """Return variables, objectives and limits of section `search`, as `evolution.evolve` takes them.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def task(section: Search) -> Task:
     Returns
     -------
     Task
-        The task of the evolution.
+        Variables with their ranges, names of the goals, limits, and which goals are better large.
     """
     return Task(
         variables=tuple(
@@ -71,7 +71,8 @@ def task(section: Search) -> Task:
 def assessor(
     machine: SearchedMachine, cycles: int, count: int
 ) -> Callable[[Sequence[float] | None], tuple[Quantities, Quantities]]:
-    """Return a function that evaluates a design.
+    """Return a function that evaluates a design: all goals of a search, nominal or as percentiles over
+    samples.
 
     It raises FacegearError for a design that cannot be built, or of which a sample cannot.
 
@@ -80,15 +81,15 @@ def assessor(
     machine : SearchedMachine
         The machine whose numbers are free.
     cycles : int
-        Number of mesh cycles of the hunting cycle.
+        Number of mesh cycles of the hunting cycle, or of the motion, over which loads are taken.
     count : int
-        Number of samples where percentiles are asked for.
+        Number of samples of each design where percentiles are asked for; all designs have the same ones.
 
     Returns
     -------
     Callable[[Sequence[float] | None], tuple[Quantities, Quantities]]
-        Function from a design's values (None: the nominal ones) to its goals and all its quantities as
-        designed, in the units of their columns.
+        Function from the values of the search's variables (None: the config's own) to the goals by name,
+        and all quantities of the machine without deviations by column, in the units of their columns.
     """
     section = machine.section
     tolerances = Tolerances.of_config(machine.tolerances) if section.robust and machine.tolerances else None
@@ -104,6 +105,7 @@ def assessor(
     sample_changes = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Quantities, Quantities]:
+        """Return the goals of a design by name, and all quantities of its nominal machine by column."""
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
         design_values = set_numbers(
             start, {key: float(number) for variable, number in numbers for key in variable.sets}
@@ -125,7 +127,12 @@ def assessor(
 def _goal(
     goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, sample_quantities: Sequence[Quantities]
 ) -> float:
-    """Return the value of an objective or constraint: nominal, or a percentile over samples."""
+    """Return the value of an objective or constraint of one design.
+
+    It is the worst of all quantities whose names begin as the goal says: the smallest where large is
+    good, else the largest. Without a percentile it is that of the nominal machine, else the percentile (0
+    to 100) over samples.
+    """
     columns = [name for start in goal.quantities for name in matching_names(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:
@@ -138,7 +145,10 @@ def _goal(
 
 
 def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:
-    """Ranges in which jumps are looked for, as designed and in the samples; None where no goal asks."""
+    """Return the ranges in which jumps are looked for, of the nominal machine and of its samples.
+
+    A range is None where no goal without, or with, a percentile asks for the margin to a jump.
+    """
     goals = (*section.objectives, *section.constraints)
     percentile_goals = {
         goal.percentile is not None for goal in goals if any(map(is_jump_quantity, goal.quantities))

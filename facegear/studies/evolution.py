@@ -35,22 +35,24 @@ class Variable:
     logarithmic: bool = False
 
     def snapped(self, part: Array) -> Array:
-        """Move parts of the range to the nearest allowed values.
+        """Round parts of the range to the nearest of `steps` evenly spaced parts; without steps all are
+        allowed.
 
         Parameters
         ----------
         part : (...) array
-            Parts of the range, fractions from 0 to 1.
+            Parts of the range between `low` and `high`, fractions from 0 to 1.
 
         Returns
         -------
         (...) array
-            Allowed parts, fractions from 0 to 1.
+            Nearest allowed parts, fractions from 0 to 1.
         """
         return part if self.steps is None else np.round(part * (self.steps - 1)) / (self.steps - 1)
 
     def value(self, part: float) -> float:
-        """Return the number at a part of the range.
+        """Return the number at a part of the range: low + (high - low) part, or low (high / low)^part if
+        logarithmic.
 
         Parameters
         ----------
@@ -85,12 +87,12 @@ class Task:
         return (*self.objectives, *(name for name, _ in self.limits))
 
     def sign(self, name: str) -> float:
-        """Return the factor that makes a goal one that is to be small.
+        """Return the factor by which a goal is multiplied so that smaller is better.
 
         Parameters
         ----------
         name : str
-            Name of the goal.
+            Name of an objective or limited quantity.
 
         Returns
         -------
@@ -100,12 +102,12 @@ class Task:
         return -1.0 if name in self.large else 1.0
 
     def costs(self, designs: pd.DataFrame) -> Array:
-        """Return the objectives of designs with the sign that makes all of them small ones.
+        """Return the objectives of designs with signs by which smaller is better in each.
 
         Parameters
         ----------
         designs : pd.DataFrame
-            Table with a column for each objective.
+            Table with a row for each design and a column for each objective.
 
         Returns
         -------
@@ -137,28 +139,29 @@ def evolve(
     there.
 
     Under the same identity a killed evolution is replayed from the journal and goes on. A design without
-    results is a row with its error and breaks all limits. The evolution ends before its last generation where
-    it finds no design that is new.
+    results is a row with its error and breaks all limits. The evolution ends before its last generation
+    where it finds no design that is new.
 
     Parameters
     ----------
     task : Task
         Variables, objectives and limits.
     evaluate : Evaluate
-        Function of a design's values that returns its goals.
+        Function from a design's values, in the order of the variables, to its goals by name.
     effort : Effort
         Size of a generation, number of generations, and seed.
     partial : str or Path
-        Journal of the designs.
+        Journal file, to which each design is appended as soon as it is evaluated.
     identity : str
-        Text that must be the same for the journal to count.
+        Text that must equal that of the journal, or its designs are not reused.
     on_progress : Callable[[], None]
-        Called after each design.
+        Called after each design, those from the journal included.
 
     Returns
     -------
     pd.DataFrame
-        Every design tried, in order; columns generation, the variables, the goals and error.
+        Every design tried, in order; columns generation (from 1), the variables by name, the goals (NaN
+        without results) and error (empty text without one).
     """
     results_by_design = {tuple(row["design"]): row for row in documents.read_journal(partial, identity)}
     rows: list[tuple[Any, ...]] = []
@@ -186,12 +189,12 @@ def evolve(
 
 
 def feasible(designs: pd.DataFrame, task: Task) -> Mask:
-    """Find the designs that have results and hold every limit.
+    """Find the designs that have results and keep every limit; a value on the limit keeps it.
 
     Parameters
     ----------
     designs : pd.DataFrame
-        Table of `evolve`.
+        Table as `evolve` returns it.
     task : Task
         Variables, objectives and limits.
 
@@ -207,19 +210,20 @@ def feasible(designs: pd.DataFrame, task: Task) -> Mask:
 
 
 def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
-    """Find the Pareto front: the feasible designs that no other beats in every objective.
+    """Find the Pareto front: the feasible designs that no other feasible one dominates.
 
     Parameters
     ----------
     designs : pd.DataFrame
-        Table of `evolve`.
+        Table as `evolve` returns it.
     task : Task
         Variables, objectives and limits.
 
     Returns
     -------
     pd.DataFrame
-        Rows of the front, each design once, sorted by the first objective.
+        Rows of the table on the front, each design once, sorted by the objectives in turn; empty without
+        a feasible design.
     """
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting  # of the extra `search`
 
@@ -239,20 +243,22 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
     """Compute the share of the objectives' box that the front of each island covers, generation by
     generation.
 
-    The box lies between the best and the worst values of the common front of all islands. A tenth is added to
-    it, so that its corners count. Each share takes all designs of an island up to the generation.
+    The box lies between the best and the worst values of the common front of all islands, each objective
+    scaled to 0..1. Its worst corner is moved out to 1.1, so that the front's ends count. Each share takes
+    all designs of an island up to the generation.
 
     Parameters
     ----------
     islands : Mapping[int, pd.DataFrame]
-        Table of `evolve` by seed.
+        Table of `evolve` by the seed of each independent evolution (island).
     task : Task
         Variables, objectives and limits.
 
     Returns
     -------
     pd.DataFrame
-        Columns seed, generation and hypervolume; empty where no design is feasible.
+        Columns seed, generation and hypervolume (share of the box, 0 to 1); empty where no design is
+        feasible.
     """
     from pymoo.indicators.hv import HV  # a library of the extra `search`
 
@@ -271,7 +277,11 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
 
 
 def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) -> dict[str, Any]:
-    """Evaluate one design; an error becomes a row with its text."""
+    """Evaluate one design and return its journal entry: keys design, values (in the order of `goals`) and
+    error.
+
+    For an error, or a goal that is not finite, values is None and error a text; else error is empty.
+    """
     try:
         values = evaluate(design)
         objectives = [float(values[name]) for name in goals]
@@ -286,7 +296,10 @@ def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) ->
 
 
 def _algorithm(task: Task, effort: Effort) -> Any:
-    """Return the genetic algorithm (NSGA-II) whose variables stay on their grid."""
+    """Return pymoo's NSGA-II, set up for parts of the variables' ranges (0 to 1), rounded to their steps.
+
+    Its constraints are the limits of the task and one more, by which designs without results are refused.
+    """
     from pymoo.algorithms.moo.nsga2 import NSGA2  # a library of the extra `search`
     from pymoo.core import problem as problems  # as above
     from pymoo.core.repair import Repair  # as above
@@ -305,7 +318,12 @@ def _algorithm(task: Task, effort: Effort) -> Any:
 
 
 def _tell(algorithm: Any, offspring: Any, rows: list[dict[str, Any]], task: Task) -> None:
-    """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
+    """Give the algorithm the costs and constraint violations of the designs that it asked for.
+
+    `offspring` is the algorithm's population, `rows` are the journal entries of its designs in the same
+    order. Costs and limits have signs by which smaller is better, and a violation is positive. Designs
+    without results get 1e9 for all of them.
+    """
     from pymoo.core.evaluator import Evaluator  # as above
     from pymoo.problems.static import StaticProblem  # as above
 

@@ -37,19 +37,20 @@ class LubricatedTeeth:
     few: FewPlaces
 
     def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
-        """Return the lubricated pair with its contact at every torque.
+        """Return the pair with its lubrication, for losses at any mesh torque.
 
         Parameters
         ----------
         lubrication : LubricationSection
             Section `lubrication` of the config.
         every_place : bool
-            Whether all points of the contact are taken, not the few that stand for them.
+            True: all points of the contact. False: the few chosen ones that give nearly the same loss and
+            extremes.
 
         Returns
         -------
         Pair
-            The pair.
+            Contact at the torques of the analysis, with the lubrication in SI units.
         """
         request = lubrication_of(lubrication, self.section)
         return LoadedPair(self.contacts, request) if every_place else ReducedPair(self.few, request)
@@ -60,20 +61,26 @@ ReduceTeeth = Callable[[pd.DataFrame, Arrays, ToothPair], LubricatedTeeth]
 
 
 def reduction_over(states: Sequence[State]) -> ReduceTeeth:
-    """Return a function that reduces contacts to few points, right over the range of some states.
+    """Return a function that reduces contacts to few points whose loss and extremes hold at some states.
+
+    Where the bulk temperature is not given, the states take it evenly from supplied oil to flash point.
 
     Parameters
     ----------
     states : Sequence[State]
-        Lubrication and pinion speed (rpm) of each state.
+        Section `lubrication` and pinion speed (rpm) of each state.
 
     Returns
     -------
     ReduceTeeth
-        Function from table and arrays of a contact and section tooth_pair to the lubricated teeth.
+        Function from table `ltca`, arrays `pressure` and section tooth_pair to the contact at all its
+        points and at few.
     """
 
     def reduce_contact(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> LubricatedTeeth:
+        """Return a pair's contact at all points and reduced to few, from table `ltca` and arrays
+        `pressure`.
+        """
         contacts = contacts_of(ltca, pressure, section)
         conditions = [
             _condition(lubrication_of(lubrication, section), speed_rpm, (GOLDEN * number) % 1.0)
@@ -85,8 +92,11 @@ def reduction_over(states: Sequence[State]) -> ReduceTeeth:
 
 
 def _condition(lubrication: Lubrication, speed_rpm: float, part: float) -> Condition:
-    """Return a state with the given bulk temperature, or `part` of the way from supplied oil to its flash
-    point.
+    """Return a state at which reduced contact must be right: pinion speed (rad/s), lubrication and bulk
+    temperature.
+
+    The bulk temperature is the given one, else `part` (0 to 1) of the way from the supplied oil to its
+    flash point.
     """
     oil = lubrication.oil_temperature
     warm = oil + part * (lubrication.oil.flash_point - oil)
@@ -97,8 +107,8 @@ def _condition(lubrication: Lubrication, speed_rpm: float, part: float) -> Condi
 def friction_quantities(
     machine: Machine, speed_rpm: float, loads: FlankLoads, pair: Pair, limits: Limits
 ) -> dict[str, float]:
-    """Compute the friction quantities of a machine: loss by the mean loads of its flanks, heat and film by
-    their largest.
+    """Compute the friction quantities of a machine: loss by the mean loads of its flanks, heat and film
+    by their largest.
 
     Parameters
     ----------
@@ -107,7 +117,7 @@ def friction_quantities(
     speed_rpm : float
         Pinion speed, rpm.
     loads : FlankLoads
-        Mean and largest force of each flank, N.
+        Mean and largest force of each flank (2 meshes,), N, drive flanks first.
     pair : Pair
         Lubricated tooth pair.
     limits : Limits
@@ -116,7 +126,10 @@ def friction_quantities(
     Returns
     -------
     dict[str, float]
-        Columns FRICTION: W, %, C, K, um, and dimensionless ratios.
+        Columns `quantities.FRICTION`: loss (W, and % of the power in), hottest bulk, flash and contact
+        temperature (C, flash in K), scuffing safety and margin (K), thinnest film (um), its ratio to
+        roughness, micropitting film ratio, and the part of the loss outside the torques of the contact
+        analysis.
 
     Raises
     ------
@@ -148,19 +161,20 @@ def friction_quantities(
 
 
 def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
-    """Return the flanks that carry a load, with the torques on their pinions.
+    """Return the flanks that carry a load at some time, with the torque on the pinion: force times
+    `pinion_arm`.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     loads : FlankLoads
-        Mean and largest force of each flank, N.
+        Mean and largest force of each flank (2 meshes,), N, drive flanks first.
 
     Returns
     -------
     MeshLoads
-        Loaded flanks; torques in N m.
+        Bodies, mean and largest torque (N m) of each loaded flank.
     """
     layout = machine.layout
     on = np.flatnonzero(loads.largest > 0.0)
@@ -176,5 +190,7 @@ def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
 
 
 def _unsolved(losses: MachineLoss) -> float:
-    """Return the part of the loss that arises under torques outside those of the contact analysis."""
+    """Return the part of the loss (0 to 1) by torques outside those of the contact analysis; 0 without
+    loss.
+    """
     return float(losses.loss[~losses.within].sum() / losses.total) if losses.total > 0.0 else 0.0

@@ -82,7 +82,9 @@ class Question:
 
     @property
     def dynamic(self) -> bool:
-        """Whether the question is answered by the motion, not by statics."""
+        """Whether quantities are those of the motion (`model` dynamic), not of statics over the hunting
+        cycle.
+        """
         return self.model == "dynamic"
 
 
@@ -112,14 +114,15 @@ class VariedMachine:
 
     @classmethod
     def of_stage(cls, flanks: Sequence[Arrays] = (), **arguments: Any) -> Self:
-        """Build the machine from the arguments of a stage.
+        """Build the machine from the arguments that a stage of the pipeline is given.
 
         Parameters
         ----------
         flanks : Sequence[Arrays]
-            Arrays of both bodies from stage compliance; empty without contact.
+            Arrays of pinion and face gear from stage compliance; empty where samples are not put into
+            contact.
         **arguments : Any
-            The other fields.
+            The other fields by name, as the class lists them.
 
         Returns
         -------
@@ -130,58 +133,66 @@ class VariedMachine:
 
     @cached_property
     def meshes(self) -> Meshes:
-        """Source of mesh stiffness and errors for each varied tooth pair."""
+        """Function from section tooth_pair to stiffness, error and contact of its meshes, see
+        `tooth_meshes`.
+        """
         return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
 
     @cached_property
     def varied_bodies(self) -> "VariedBodies | None":
-        """Face gears that bend, computed anew where a varied machine changes them."""
+        """Cache of elastic face gears, which solves those that a varied machine changes; None for rigid
+        gears.
+        """
         if self.solid is None or self.bodies is None:
             return None
         return VariedBodies.of_stage(self.transmission, self.solid, self.bodies)
 
     @cached_property
     def surface(self) -> "PoseSurface | None":
-        """Contact over pose, where the machine's own forces put the teeth."""
+        """Contact over the pose of pinion and gear, for meshes in the loaded position; None for meshes as
+        assembled.
+        """
         if self.poses is None:
             return None
         return PoseSurface.of_arrays(self.poses)
 
     def judge_of(self, question: Question, label: str, nominal: Values | None = None) -> Judge:
-        """Return the function that computes the quantities of each varied machine.
+        """Return the function that builds each varied machine and computes its quantities, with this
+        one's meshes, elastic gears and poses.
 
         Parameters
         ----------
         question : Question
-            Settings of the judgement.
+            Loads over how many cycles, at rest or in motion, and accuracy.
         label : str
-            Name of a machine in errors.
+            What errors call the machine, such as `this sample`.
         nominal : Values or None
-            Values that all machines are near; their orbit is the first guess. None without a guess.
+            Values of a machine that all are near: in motion its orbit is the first guess. None without a
+            guess.
 
         Returns
         -------
         Judge
-            Function from values to quantities.
+            Function from the values of `schema.changes.variable_part` to quantities by column.
         """
         return judge(question, self.meshes, label, self.varied_bodies, self.surface, nominal)
 
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
-        """Return the names of the quantities of a machine.
+        """Return the names of the quantities that a judge computes for a machine with this layout.
 
         Parameters
         ----------
         layout : Layout
             Layout of the machine.
         question : Question
-            Settings of the judgement.
+            Settings of the judge, of which the model is taken.
         jumps : bool
             Whether the margin to the nearest jump is one of them.
 
         Returns
         -------
         tuple[str, ...]
-            Names of the columns.
+            Names of the columns, those of single meshes and groups included.
         """
         gauges = self.pair is not None and self.pair["contact"]["root_stress"]
         contact, law = self.pair is not None, self.law is not None
@@ -189,21 +200,22 @@ class VariedMachine:
 
     @property
     def friction(self) -> bool:
-        """Whether quantities of friction are asked for."""
+        """Whether quantities of friction are computed: never here, see `SampledMachine`."""
         return False
 
     def identity(self, *parts: object) -> str:
-        """Return a text that differs whenever one of the parts or a value of the machine does.
+        """Return a text that differs whenever one of the parts or a value of the machine does, for a
+        journal.
 
         Parameters
         ----------
         *parts : object
-            Plain values.
+            Further values that JSON can hold.
 
         Returns
         -------
         str
-            The text.
+            JSON text of parts and fields; arrays that follow from other fields are left out.
         """
         plain = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in ARRAYS}
         tables = {name: value.to_csv() for name, value in plain.items() if isinstance(value, pd.DataFrame)}
@@ -222,29 +234,31 @@ def tooth_meshes(
     rub: "ReduceTeeth | None" = None,
     lubricated_teeth: "LubricatedTeeth | None" = None,
 ) -> Meshes:
-    """Return the function that gives the mesh of a tooth pair.
+    """Return the function that gives stiffness, error and lubrication of a tooth pair's meshes.
 
-    Without `pair` all machines have one mesh, that of `harmonics`.
+    Without `pair` all machines have one mesh, that of `harmonics`; with it, `harmonics`, `law` and
+    `lubricated_teeth` are not used.
 
     Parameters
     ----------
     harmonics : pd.DataFrame
-        Table `harmonics` of stage stiffness.
+        Table `harmonics` of stage stiffness: mesh stiffness and unloaded transmission error.
     pair : Values or None
-        Sections tooth_pair, mesh, contact and mesh_stiffness, where each pair is put into contact; else None.
+        Sections tooth_pair, mesh, contact and mesh_stiffness, where each pair is put into contact; else
+        None.
     flanks : GearFlanks
         Compliance of the bodies of `pair` by name.
     law : mapping of arrays or None
         Arrays `law` of stage mesh_law; None where k does not depend on the load.
     rub : ReduceTeeth or None
-        Function that reduces each contact of lubricated pairs.
+        Function that reduces the contact of each pair to few points; None without lubrication.
     lubricated_teeth : LubricatedTeeth or None
-        Lubricated teeth of the one mesh.
+        Lubricated teeth of the one mesh; None without lubrication.
 
     Returns
     -------
     Meshes
-        Function from section tooth_pair to the mesh.
+        Function from plain values of section tooth_pair to the excitation by its meshes.
     """
     if pair is not None:
         return meshes_in_contact(pair, flanks, rub)
@@ -266,7 +280,7 @@ def stored_flanks(arrays: Sequence[Arrays]) -> GearFlanks:
     Returns
     -------
     GearFlanks
-        Compliance by body.
+        Compliance of the flanks by body, `pinion` and `face_gear`; empty without arrays.
     """
     if not arrays:
         return {}
@@ -283,25 +297,31 @@ def judge(
 ) -> Judge:
     """Return a function that builds a varied machine and computes its quantities.
 
+    The machine is refused if it cannot be assembled or is pressed together at rest. The nominal orbit is
+    found at the first call and then kept.
+
     Parameters
     ----------
     question : Question
-        Settings of the judgement.
+        Loads over how many cycles, at rest or in motion, accuracy, jumps, and points of the contact.
     meshes : Meshes
-        Function from section tooth_pair to its mesh.
+        Function from plain values of section tooth_pair to the excitation by its meshes.
     label : str
-        Name of the machine in errors.
+        What errors call the machine, such as `this sample`.
     bodies : VariedBodies or None
         Face gears that bend; None for rigid ones.
     surface : PoseSurface or None
         Contact over pose, where meshes stand as the forces of their machine put them; else None.
     nominal : Values or None
-        Values that all machines are near, whose orbit is the first guess; None without a guess.
+        Values of a machine that all are near, whose orbit is the first guess of motion; None without a
+        guess.
 
     Returns
     -------
     Judge
-        Function from values to quantities.
+        Function from the values of `schema.changes.variable_part` (transmission, tooth_pair, dynamics
+        and, with friction, lubrication) to quantities by column: load sharing, contact, friction, jump
+        margin.
     """
     ask = _ask(question)
 
@@ -312,11 +332,17 @@ def judge(
         speed: float,
         loads: FlankLoads,
     ) -> dict[str, float]:
+        """Return the friction quantities of a machine by column, given the loads of its flanks (N) and
+        its speed (rpm).
+        """
         section = parse(LubricationSection, lubrication, label)
         pair = teeth.pair(section, question.every_place)
         return friction_quantities(lumped_machine, speed, loads, pair, limits_of(section))
 
     def assemble(values: Values) -> tuple[PairExcitation, Machine]:
+        """Build the machine of some config values, and return the excitation by its tooth pair and the
+        machine.
+        """
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
         parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
@@ -332,6 +358,9 @@ def judge(
 
     @cache
     def guide() -> Guide | None:
+        """Return the orbit of the nominal machine as first guess; None at rest, or where it cannot be
+        built.
+        """
         if nominal is None or not question.dynamic:
             return None
         try:
@@ -342,6 +371,7 @@ def judge(
 
     @keys_named()
     def judge_machine(values: Mapping[str, Any]) -> dict[str, float]:
+        """Return all quantities of the machine that config values describe, by column."""
         mesh, lumped_machine = assemble(values)
         speed = values["dynamics"]["speed_rpm"]
         quantities, loads = ask(lumped_machine, speed, guide())
@@ -358,7 +388,12 @@ def judge(
 
 
 def _ask(question: Question) -> Callable[[Machine, float, Guide | None], MachineQuantities]:
-    """Return the function that answers a question on a machine, at rest or in motion."""
+    """Return the function that computes load quantities of a machine, at rest or in motion as the
+    question says.
+
+    Its arguments are the machine, the pinion speed (rpm) and a first guess of the orbit or None; at rest
+    the last two do nothing. It returns quantities by column and the loads of the flanks (N).
+    """
     if not question.dynamic:
         return lambda lumped_machine, speed, guide: quasi_static_quantities(
             at_rest(lumped_machine), question.cycles
@@ -368,6 +403,6 @@ def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Machine
 
 
 def _precision(question: Question) -> tuple[Settings, SharingOptions]:
-    """Return settings of the motion and of load sharing for samples."""
+    """Return settings of the steady-state search and of load sharing, the latter with a single start."""
     precise = settings(Accuracy.of_config(question.accuracy))
     return precise, replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)

@@ -57,12 +57,16 @@ class SampledMachine(VariedMachine):
 
     @property
     def friction(self) -> bool:
-        """Whether friction is asked for."""
+        """Whether quantities of friction are computed: where `lubrication_sections` is given."""
         return self.lubrication_sections is not None
 
     @cached_property
     def meshes(self) -> Meshes:
-        """The mesh of each one's tooth pair, lubricated where friction is asked for."""
+        """Function from section tooth_pair to stiffness, error and contact of its meshes, lubricated
+        where friction is asked for.
+
+        Contact is reduced to few points over `lubricated_states`.
+        """
         if self.lubrication_sections is None:
             return super().meshes
         rub = reduction_over(self.lubricated_states)
@@ -74,7 +78,13 @@ class SampledMachine(VariedMachine):
 
     @cached_property
     def lubricated_states(self) -> list[tuple[LubricationSection, float]]:
-        """Lubrication and speed (rpm) of STATES machines that are none of the samples, where they can be."""
+        """Section `lubrication` and pinion speed (rpm) of STATES other machines, over which contact is
+        reduced.
+
+        They are drawn from the causes with another seed. Speeds are in turn the nominal one and the
+        slowest and fastest of the load map, plus the sample's own deviation. Without any valid machine
+        the nominal state is the only one.
+        """
         other_population = replace(self.causes, seed=self.section.seed + 1)
         load_map = self.section.load_map
         speeds = [speed for _, speed in load_map.loads(self.speed_rpm)] if load_map else [self.speed_rpm]
@@ -95,12 +105,12 @@ class SampledMachine(VariedMachine):
 
     @cached_property
     def causes(self) -> Population:
-        """Causes that move the values."""
+        """Causes of section `tolerances` with their distributions and seed."""
         return population(self.section)
 
     @cached_property
     def start(self) -> dict[str, Any]:
-        """The nominal values that the causes move."""
+        """Nominal values of `variable_part`, with an entry for every key that a cause moves."""
         teeth = self.pair["tooth_pair"] if self.pair else self.teeth
         keys = [key for cause in self.causes.causes for key, _ in cause.gains]
         oil = self.lubrication_sections["lubrication"] if self.lubrication_sections else None
@@ -108,69 +118,82 @@ class SampledMachine(VariedMachine):
 
     @property
     def question(self) -> Question:
-        """Settings by which a sample is judged."""
+        """Settings by which a sample is judged: model and hunting cycles of `tolerances`, accuracy, load
+        sharing.
+        """
         return Question(self.section.model, self.section.hunting_cycles, self.accuracy, self.options)
 
     @cached_property
     def judge(self) -> Judge:
-        """Function that judges a sample, given its values."""
+        """Function from the config values of a sample, see `sample`, to its quantities by column; near
+        `start`.
+        """
         return self.judge_near(self.start)
 
     def judge_near(self, nominal: Values) -> Judge:
-        """Return the function that judges samples near other values.
+        """Return the function that judges samples near other nominal values than `start`.
 
         Parameters
         ----------
         nominal : Values
-            Values from which the samples differ by their causes alone.
+            Values of `variable_part` from which samples differ by their causes alone; in motion their
+            orbit is the first guess.
 
         Returns
         -------
         Judge
-            Function from a sample's values to its quantities.
+            Function from a sample's config values to its quantities by column.
         """
         return self.judge_of(self.question, "this sample", nominal)
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
-        """Return the variable part of the config of a sample.
+        """Return the config values of a sample: the nominal ones plus the changes by its causes.
 
         Parameters
         ----------
         values : Sequence[float]
-            Values of its causes, in the unit of each cause.
+            Values (causes,) of its causes, in the unit of each cause.
 
         Returns
         -------
         dict[str, Any]
-            Plain config values.
+            Plain values of `variable_part`, for a judge.
         """
         return add_changes(self.start, changes(self.causes, values))
 
     @cached_property
     def whole_judge(self) -> Judge:
-        """Function from the config values of a sample, see `sample`, to its quantities by column, with loads
-        over every mesh cycle of the hunting cycle.
+        """Function from the config values of a sample, see `sample`, to its quantities by column, with
+        loads over every mesh cycle of the hunting cycle.
         """
         return self.judge_of(replace(self.question, cycles=WHOLE), "this sample")
 
     @cached_property
     def thorough_judge(self) -> Judge:
-        """Function that judges a sample by every point of the contact."""
+        """Function from the config values of a sample to its quantities, with friction at all points of
+        the contact.
+        """
         return self.judge_of(replace(self.question, every_place=True), "this sample", self.start)
 
     @property
     def checks(self) -> tuple[str, ...]:
-        """Columns with the error of the first CHECKED_SAMPLES samples."""
+        """Columns with the errors of the first CHECKED_SAMPLES samples, NaN in the others.
+
+        At rest they have those by mesh cycles left out, with friction those by few points of the contact.
+        """
         hunting = () if self.question.dynamic else tuple(CYCLE_SELECTION_ERRORS.values())
         return (*hunting, *(SIMPLIFICATION_ERRORS.values() if self.friction else ()))
 
     def judge_sample(self, sample: Values, check: bool, judge: Judge | None = None) -> dict[str, float]:
-        """Judge a sample, and where asked compute the error of its simplifications.
+        """Compute the quantities of a sample, and where asked the errors of its simplifications.
+
+        They are mesh cycles left out of the hunting cycle, and few points that stand for the whole
+        contact.
 
         Parameters
         ----------
         sample : Values
-            Values of the sample.
+            Config values of the sample, see `sample`.
         check : bool
             Whether the columns `checks` are computed; they are nan otherwise.
         judge : Judge or None
@@ -179,7 +202,8 @@ class SampledMachine(VariedMachine):
         Returns
         -------
         dict[str, float]
-            Quantities in the units of their columns, and the columns `checks`.
+            Quantities in the units of their columns, and the columns `checks`: relative errors,
+            differences of fractions, K for the bulk temperature.
         """
         values = (judge or self.judge)(sample)
         if not check:
@@ -188,8 +212,9 @@ class SampledMachine(VariedMachine):
         return values | cycle_deviations | (self._reduction_errors(sample, values) if self.friction else {})
 
     def _reduction_errors(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return by how much `values`, whose friction is taken at few points of the contact, differ from the
-        quantities with all points, by column of SIMPLIFICATION_ERRORS: relative, for a temperature in K.
+        """Return by how much `values`, whose friction is taken at few points of the contact, differ from
+        the quantities with all points, by column of SIMPLIFICATION_ERRORS: relative, for a temperature in
+        K.
         """
         whole = self.thorough_judge(sample)
         off = {
@@ -199,7 +224,12 @@ class SampledMachine(VariedMachine):
         return {column: off[name] for name, column in SIMPLIFICATION_ERRORS.items()}
 
     def _cycle_deviations(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
-        """Return the errors by the mesh cycles left out: columns of CYCLE_SELECTION_ERRORS."""
+        """Return by how much quantities over all mesh cycles exceed those over few, `values`, of the same
+        sample.
+
+        Columns are those of CYCLE_SELECTION_ERRORS: differences of the open and reversed fractions of
+        time, and the largest relative error of K_gamma over all meshes.
+        """
         whole = self.whole_judge(sample)
         paths = matching_names(f"{K_GAMMA} ", list(whole))
         deviations = {name: whole[name] - values[name] for name in (OPEN_FRACTION, REVERSED_FRACTION)}
@@ -215,16 +245,16 @@ class SampledMachine(VariedMachine):
         partial: str | Path | None,
         *identity_parts: object,
     ) -> pd.DataFrame:
-        """Evaluate samples with `run_chunk`.
+        """Evaluate samples by number with `run_chunk`, which resumes from a journal.
 
         Parameters
         ----------
         evaluate : Evaluate
-            Results of one sample, given its number.
+            Function from a sample's number to its quantities by column.
         numbers : range
             Numbers of the samples.
         label : str
-            Name of the samples for who waits.
+            Name of the samples in the progress that is shown.
         partial : str or Path or None
             Journal of finished samples; nothing is kept if None.
         *identity_parts : object
@@ -233,7 +263,7 @@ class SampledMachine(VariedMachine):
         Returns
         -------
         pd.DataFrame
-            Rows of the samples; columns `checks` come last.
+            One row for each sample: columns sample, the quantities, `checks`, and error.
         """
         layout = wired_layout(self.start["transmission"], self.teeth)
         names = [*self.columns(layout, self.question), *self.checks]

@@ -39,7 +39,11 @@ class Distribution:
     values: tuple[float, ...] = ()
 
     def quantile(self, probability: Array) -> Array:
-        """Return the quantiles of the distribution.
+        """Return the values at cumulative probabilities: the inverse of the cumulative distribution.
+
+        With limits the distribution is truncated: probabilities are mapped linearly onto those between
+        the limits. For `choice` equal parts of (0, 1) belong to the values in turn. Without spread all
+        values are `centre`.
 
         Parameters
         ----------
@@ -70,7 +74,9 @@ class Distribution:
 
     @property
     def _scipy_distribution(self) -> "scipy.stats.rv_frozen":
-        """Distribution without limits as SciPy has it."""
+        """Frozen SciPy distribution without limits: Rayleigh with scale `spread`, or normal; of no use
+        for other shapes.
+        """
         if self.shape is Shape.RAYLEIGH:
             return scipy.stats.rayleigh(scale=self.spread)
         return scipy.stats.norm(self.centre, self.spread)
@@ -117,21 +123,23 @@ class Population:
 
 
 def samples(population: Population, start: int, count: int) -> Array:
-    """Return the values of consecutive samples.
+    """Return the values of consecutive samples of a scrambled Sobol sequence.
+
+    Sample s is the same whatever `start` and `count` are.
 
     Parameters
     ----------
     population : Population
-        The causes.
+        Causes with their distributions, seed, and rank correlation if there is one.
     start : int
-        Number of the first sample.
+        Number of the first sample, from 0.
     count : int
         Number of samples.
 
     Returns
     -------
     (count, causes) array
-        Values of the causes, in the unit of each cause.
+        Values of the causes, in the unit of each cause: one row a sample.
     """
     probability = _sobol(len(population.causes), population.seed, start, count)
     return _values(population.causes, _correlated(probability, population.factor))
@@ -140,22 +148,23 @@ def samples(population: Population, start: int, count: int) -> Array:
 def index_samples(population: Population, start: int, count: int) -> Array:
     """Return the values of consecutive samples of Saltelli's design for Sobol indices.
 
-    Sample s belongs to block s // (d + 2) with d causes. Within its block come the point A, the point B, and
-    A with each single cause taken from B.
+    Sample s belongs to block s // (d + 2) with d causes. Within its block come the point A, the point B,
+    and for each cause in turn the point A with this cause taken from B. Sobol point s // (d + 2) in 2 d
+    dimensions holds A in its first half and B in its second.
 
     Parameters
     ----------
     population : Population
         The causes; they must be independent.
     start : int
-        Number of the first sample.
+        Number of the first sample, from 0.
     count : int
         Number of samples.
 
     Returns
     -------
     (count, causes) array
-        Values of the causes, in the unit of each cause.
+        Values of the causes, in the unit of each cause: one row a sample.
 
     Raises
     ------
@@ -177,12 +186,13 @@ def index_samples(population: Population, start: int, count: int) -> Array:
 
 
 def changes(population: Population, values: Sequence[float]) -> dict[str, float]:
-    """Return the changes of config keys in one sample.
+    """Return the changes of config keys in one sample: gain times value, summed over all causes that move
+    a key.
 
     Parameters
     ----------
     population : Population
-        The causes.
+        Causes with their distributions, seed, and rank correlation if there is one.
     values : Sequence[float]
         Values (causes,) of the sample, in the unit of each cause.
 
@@ -199,7 +209,11 @@ def changes(population: Population, values: Sequence[float]) -> dict[str, float]
 
 
 def _sobol(dimensions: int, seed: int, start: int, count: int) -> Array:
-    """Return scrambled Sobol points (count, dimensions) from number `start` on, in (0, 1)."""
+    """Return scrambled Sobol points (count, dimensions) from number `start` on, in the open interval (0,
+    1).
+
+    The sequence depends on `dimensions` and `seed` alone. Points keep the distance SMALLEST from 0 and 1.
+    """
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
     if start:
         sequence.fast_forward(start)
@@ -211,7 +225,12 @@ def _sobol(dimensions: int, seed: int, start: int, count: int) -> Array:
 
 
 def _correlated(probability: Array, factor: Array | None) -> Array:
-    """Probabilities with the correlation put in; sums in a fixed order, so that no batch size shows."""
+    """Return probabilities (samples, causes) with the rank correlation of a Gaussian copula.
+
+    `probability` has independent columns in (0, 1). Their normal scores are multiplied by `factor`
+    (causes, causes), the lower Cholesky factor of the correlation of scores. None returns them as they
+    are. Sums run in a fixed order, so that a row does not depend on the number of rows.
+    """
     if factor is None:
         return probability
     scores = scipy.special.ndtri(probability)
@@ -223,13 +242,16 @@ def _correlated(probability: Array, factor: Array | None) -> Array:
 
 
 def _values(causes: tuple[Cause, ...], probability: Array) -> Array:
-    """Return the values (samples, causes) at given cumulative probabilities."""
+    """Return the values (samples, causes), each in its cause's unit, at cumulative probabilities
+    (samples, causes).
+    """
     columns = [cause.distribution.quantile(probability[:, i]) for i, cause in enumerate(causes)]
     return np.column_stack(columns)
 
 
 def population(section: Tolerances) -> "Population":
-    """Return the causes with their distributions, for sampling.
+    """Return the causes of section `tolerances` with their distributions, seed and rank correlation, for
+    sampling.
 
     Parameters
     ----------
@@ -239,7 +261,8 @@ def population(section: Tolerances) -> "Population":
     Returns
     -------
     Population
-        The causes; deviations in the units of their keys.
+        Causes in the order of the config. A value of a cause times its gain is a change in the unit of
+        the key.
     """
     # Imported here: a config is read without scipy.stats.
     causes = tuple(

@@ -26,8 +26,8 @@ class Estimate:
 def percentile(values: Array, probability: float, confidence: float = 0.95) -> Estimate:
     """Estimate a percentile, with the distribution-free interval between order statistics.
 
-    The interval is that of independent samples; those of a scrambled Sobol sequence lie closer together, so
-    it is on the safe side. An end that the sample is too small to bound is infinite.
+    The interval is that of independent samples; those of a scrambled Sobol sequence lie closer together,
+    so it is on the safe side. An end that the sample is too small to bound is infinite.
 
     Parameters
     ----------
@@ -41,7 +41,8 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
     Returns
     -------
     Estimate
-        Percentile and interval in the unit of the values.
+        Percentile (linear between order statistics) and both ends of the interval, in the unit of the
+        values.
     """
     sorted_values = np.sort(values)
     count, tail = sorted_values.size, 0.5 * (1.0 - confidence)
@@ -67,7 +68,8 @@ def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
     Returns
     -------
     Estimate
-        Share and interval, fractions.
+        Share and both ends of the interval, fractions from 0 to 1; the interval ends at 0 or 1 where no
+        or every sample counts.
     """
     count, counts = hits.size, int(hits.sum())
     part, z = counts / count, float(scipy.special.ndtri(0.5 + 0.5 * confidence))
@@ -93,15 +95,18 @@ class SobolIndices:
 def sobol_indices(
     values: Array, causes: int, confidence: float = 0.95, seed: int = 0, resamples: int = RESAMPLES
 ) -> SobolIndices:
-    """Estimate the Sobol indices of one output from the results of Saltelli's design (Saltelli et al. 2010).
+    """Estimate the Sobol indices of one output from the results of Saltelli's design (Saltelli et al.
+    2010).
 
-    Blocks that hold a failed sample (NaN) are left out and counted. The first of the others are used, as many
-    as the largest power of two: SciPy's estimator asks for that. Intervals are bootstrapped over blocks.
+    Blocks that hold a failed sample (NaN) are left out and counted. The first of the others are used, as
+    many as the largest power of two: SciPy's estimator asks for that. Intervals are bootstrapped over
+    blocks.
 
     Parameters
     ----------
     values : (samples,) array
-        Results in the order of the design, any unit.
+        Results in the order of `sampling.index_samples`, blocks of `causes` + 2, any unit; NaN where a
+        sample failed. An incomplete last block is left out.
     causes : int
         Number of causes.
     confidence : float
@@ -114,12 +119,13 @@ def sobol_indices(
     Returns
     -------
     SobolIndices
-        First-order and total indices with their intervals, dimensionless.
+        First-order and total index of each cause with its interval, dimensionless, and numbers of blocks
+        used and failed.
 
     Raises
     ------
     ValueError
-        If no block is whole.
+        If every block holds a failed sample.
     """
     blocks = values[: values.size // (causes + 2) * (causes + 2)].reshape(-1, causes + 2)
     whole = np.isfinite(blocks).all(axis=1)
@@ -141,8 +147,10 @@ def sobol_indices(
 
 
 def _indices(blocks: Array) -> Array:
-    """Return first-order and total sensitivity indices (2, causes) of whole blocks, one resample at a time to
-    save memory.
+    """Return first-order and total Sobol indices (2, causes) from whole blocks (blocks, causes + 2).
+
+    A block holds the results at A, at B, and at A with each cause from B. The bootstrap calls it resample
+    by resample, to save memory.
     """
     functions = {"f_A": blocks[None, :, 0], "f_B": blocks[None, :, 1], "f_AB": blocks[:, 2:].T[:, None, :]}
     estimate = scipy.stats.sobol_indices(func=functions, n=len(blocks))
@@ -171,9 +179,11 @@ class Loosest:
 def loosest(
     sample_results: Callable[[float], Array], at_most: float, level: float, max_factor: float
 ) -> Loosest:
-    """Find the largest scale of all deviations at which a percentile does not exceed a limit, by bisection.
+    """Find the largest scale of all deviations at which a percentile does not exceed a limit, by
+    bisection.
 
-    The percentile is taken to rise with the scale.
+    The percentile is taken to rise with the scale. Tried are 0 and `max_factor`, then HALVINGS midpoints;
+    the result is the largest scale tried that holds the limit.
 
     Parameters
     ----------
@@ -185,12 +195,13 @@ def loosest(
     level : float
         Level of the percentile, a fraction from 0 to 1.
     max_factor : float
-        Largest scale to try, dimensionless factor.
+        Largest scale to try, dimensionless factor; the result if it holds.
 
     Returns
     -------
     Loosest
-        The scale, its interval, the percentile there, and all trials.
+        Largest scale, the scales at which the ends of the percentile's interval meet the limit, the
+        percentile there, and a table of all trials.
 
     Raises
     ------
@@ -200,6 +211,7 @@ def loosest(
     results_by_scale: dict[float, tuple[Estimate, int]] = {}
 
     def holds(scale: float) -> bool:
+        """Evaluate the samples at a scale, keep the percentile, and tell whether it is at most the limit."""
         values = sample_results(scale)
         is_failed = np.isnan(values)
         results_by_scale[scale] = percentile(np.where(is_failed, np.inf, values), level), int(is_failed.sum())
@@ -223,7 +235,12 @@ def loosest(
 
 
 def _interval(trials: pd.DataFrame, at_most: float) -> tuple[float, float]:
-    """Scales at which the ends of the percentile's interval, made to rise, pass the limit."""
+    """Return the scales at which the upper and the lower end of the percentile's interval pass the limit.
+
+    `trials` has the columns scale (rising), low and high. Ends are first made to rise with the scale by
+    their running maximum, then interpolated linearly between trials. A scale is infinite where no trial
+    is above the limit, and 0 where the first is.
+    """
     scale = trials["scale"].to_numpy(float)
     bounds = []
     for end in ("high", "low"):

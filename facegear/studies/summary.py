@@ -34,31 +34,31 @@ def run_chunk(
     identity: str,
     on_progress: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Evaluate samples by number, and keep every finished one at once.
+    """Evaluate samples by number, and append every finished one to a journal at once.
 
-    A killed chunk goes on after its last sample. A sample that raises FacegearError becomes a row with the
-    error's text.
+    Samples that the journal has under this identity are not evaluated again. A sample that raises
+    FacegearError becomes a row with the error's text.
 
     Parameters
     ----------
     evaluate : Evaluate
-        Results by column name of one sample, given its number.
+        Function from a sample's number to its results by column name.
     numbers : Sequence[int]
         Numbers of the samples.
     columns : Sequence[str]
-        Names of the results.
+        Names of the results that are kept, in the order of the table's columns.
     partial : str or Path
         Journal of finished samples; its rows count only if they were written under the same identity.
     identity : str
-        Hash of everything that decides a result.
+        Text made of everything that decides a result, see `identity`.
     on_progress : Callable[[], None]
-        Called after each sample.
+        Called after each sample, those from the journal included.
 
     Returns
     -------
     pd.DataFrame
-        Columns sample, `columns` and error, rows in the order of the numbers; NaN in `columns` where a sample
-        failed.
+        Columns sample, `columns` and error, rows in the order of the numbers; NaN in `columns` where a
+        sample failed.
     """
     stored_records = {record[SAMPLE]: record for record in documents.read_journal(partial, identity)}
     results, errors = np.full((len(numbers), len(columns)), np.nan), []
@@ -81,7 +81,11 @@ def run_chunk(
 
 
 def _record(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
-    """Evaluate one sample; an error becomes a record with its text."""
+    """Evaluate one sample and return its journal entry: keys sample (number), values and error.
+
+    Values are in the order of `columns`, and error is empty. For a FacegearError values is None and error
+    the first line of its text.
+    """
     try:
         values = evaluate(number)
     except FacegearError as error:
@@ -90,17 +94,17 @@ def _record(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str
 
 
 def identity(*parts: object) -> str:
-    """Join values to a text that differs whenever one of them does.
+    """Join values to a text (JSON with sorted keys) that differs whenever one of them does.
 
     Parameters
     ----------
     *parts : object
-        Plain values.
+        Values that JSON can hold.
 
     Returns
     -------
     str
-        The text.
+        The text, which identifies the journal of a chunk.
     """
     return json.dumps(parts, sort_keys=True)
 
@@ -125,19 +129,19 @@ INDEX_COLUMNS = (
 
 
 def quantities_of(samples: pd.DataFrame, causes: Sequence[str]) -> list[str]:
-    """Return the columns of a table of samples that hold results.
+    """Return the columns of a table of samples that hold results: all but sample, the causes and error.
 
     Parameters
     ----------
     samples : pd.DataFrame
-        Table of samples.
+        Table of samples, one a row.
     causes : Sequence[str]
-        Names of the causes.
+        Names of the causes, which are columns, too.
 
     Returns
     -------
     list[str]
-        Names of the columns.
+        Names of the result columns, in their order.
     """
     return [name for name in samples.columns if name not in (SAMPLE, *causes, ERROR)]
 
@@ -152,7 +156,7 @@ def percentile_table(
     Parameters
     ----------
     samples : pd.DataFrame
-        Table of samples.
+        Table of samples: columns sample, causes, quantities and error.
     causes : Sequence[str]
         Names of the causes.
     confidence : float
@@ -163,7 +167,9 @@ def percentile_table(
     Returns
     -------
     pd.DataFrame
-        One row for each quantity and percentile; empty ends of the interval are unbounded.
+        Columns quantity, percentile (%), value, low, high (in the quantity's unit) and samples (count):
+        one row for each quantity and percentile. NaN in low or high: the sample is too small to bound
+        that end.
     """
     rows = []
     for name in quantities_of(samples, causes):
@@ -179,22 +185,23 @@ def percentile_table(
 
 
 def fraction_table(samples: pd.DataFrame, events: dict[str, str], confidence: float) -> pd.DataFrame:
-    """Tabulate the fraction of samples that failed, and of those in which a fraction of time or loss is above
-    zero.
+    """Tabulate the fraction of samples that failed, and in which an event occurs: a column is above zero.
 
     Parameters
     ----------
     samples : pd.DataFrame
-        Table of samples.
+        Table of samples with column error, empty where a sample did not fail.
     events : dict[str, str]
-        Name of the event in words by column.
+        Name of the event in words, by the column that is above zero where it occurs; absent columns are
+        left out.
     confidence : float
         Confidence of the intervals, a fraction.
 
     Returns
     -------
     pd.DataFrame
-        Columns what, fraction, low, high and samples.
+        Columns what (the event), fraction, low, high (its interval) and samples: all of them for
+        failures, those that did not fail for the events.
     """
     is_failed = samples[ERROR].to_numpy() != ""
     rows = [("cannot be built or computed", is_failed)]
@@ -211,22 +218,22 @@ def fraction_table(samples: pd.DataFrame, events: dict[str, str], confidence: fl
 
 
 def sampling_table(samples: pd.DataFrame, deviation_columns: Mapping[str, str]) -> pd.DataFrame:
-    """Tabulate the error of samples that take a part of the hunting cycle only.
+    """Tabulate the errors by which samples differ from a computation over the whole hunting cycle.
 
     The error comes from those samples that are also computed over the whole cycle.
 
     Parameters
     ----------
     samples : pd.DataFrame
-        Table of samples.
+        Table of samples with the error columns.
     deviation_columns : Mapping[str, str]
         Column with the error of each quantity, nan in the other samples.
 
     Returns
     -------
     pd.DataFrame
-        Columns quantity, samples, median_missed and largest_missed (sizes); no row for a quantity that was
-        not computed twice.
+        Columns quantity, samples (count with an error), median_missed and largest_missed, of the errors'
+        sizes in the unit of their columns; no row for a quantity that was not computed twice.
     """
     rows = []
     for name, column in deviation_columns.items():
@@ -242,14 +249,15 @@ def importance_table(samples: pd.DataFrame, causes: Sequence[str]) -> pd.DataFra
     Parameters
     ----------
     samples : pd.DataFrame
-        Table of samples.
+        Table of samples: columns sample, causes, quantities and error; failed ones are left out.
     causes : Sequence[str]
         Names of the causes.
 
     Returns
     -------
     pd.DataFrame
-        Columns quantity, cause and rank_correlation; empty where one never changes.
+        Columns quantity, cause and rank_correlation (-1 to 1), a row for each pair; NaN where one of both
+        never changes or fewer than three samples have a finite value.
     """
     whole = samples[samples[ERROR] == ""]
     rows = []
@@ -270,7 +278,7 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
     Parameters
     ----------
     samples : pd.DataFrame
-        Results of Saltelli's design.
+        Table of the samples of Saltelli's design, all of them in the order of `sampling.index_samples`.
     causes : Sequence[str]
         Names of the causes.
     confidence : float
@@ -279,7 +287,8 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
     Returns
     -------
     pd.DataFrame
-        Columns INDEX_COLUMNS.
+        A row for each quantity and cause: first-order and total index, each with low and high end of its
+        interval, and numbers of blocks used and failed; columns INDEX_COLUMNS.
     """
     rows = []
     for name in quantities_of(samples, causes) if len(samples) else ():
@@ -294,6 +303,6 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
 
 
 def _nan_if_unbounded(estimate: Estimate) -> tuple[float, float, float]:
-    """Return value and interval of an estimate, with nan for an infinite end."""
+    """Return value, low and high end of an estimate, with NaN in place of an infinite end."""
     low, high = (end if np.isfinite(end) else np.nan for end in (estimate.low, estimate.high))
     return estimate.value, low, high

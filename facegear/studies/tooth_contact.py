@@ -65,7 +65,7 @@ class PairExcitation:
     lubricated_teeth: "LubricatedTeeth | None" = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
-        """Return section `transmission` with the backlash of this pair.
+        """Return section `transmission` with `backlash_added` on the backlash of all meshes.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class PairExcitation:
         return section
 
     def quantities(self, force: float) -> dict[str, float]:
-        """Return the contact quantities of a machine.
+        """Return the contact quantities of a machine: pressure and root stress at its largest mesh force.
 
         Parameters
         ----------
@@ -100,7 +100,8 @@ class PairExcitation:
         Returns
         -------
         dict[str, float]
-            Transmission error (um), pressure and root stress (MPa) by column; none without contact.
+            Peak-to-peak and mesh-frequency amplitude of the loaded transmission error (um), which do not
+            depend on the force, pressure and root stress (MPa), by column; empty without contact.
         """
         if self.answers is None:
             return {}
@@ -127,7 +128,10 @@ KEPT_BODIES = 4
 
 
 def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None" = None) -> Meshes:
-    """Return a function that solves the contact of tooth pairs, and remembers the last ones.
+    """Return a function that solves the contact of tooth pairs, and keeps the last CACHED_PAIRS of them.
+
+    Pairs with the nodes of the nominal pair start from its solved contact. The function raises the errors
+    that a config gets for a pair that cannot be built or solved.
 
     Parameters
     ----------
@@ -141,7 +145,8 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
     Returns
     -------
     Meshes
-        Function from section tooth_pair to the mesh of the pair.
+        Function from plain values of section tooth_pair to stiffness, unloaded error, change of backlash
+        and answers of the contact.
     """
     backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
     plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
@@ -149,7 +154,9 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
 
     @cache
     def nominal() -> KnownContact | None:
-        """The contact of the pair itself; None where there is none."""
+        """Return solved contact of the nominal pair, from which similar pairs start; None where it cannot
+        be solved.
+        """
         section = ToothPair.of_config(pair["tooth_pair"])
         try:
             compliances, _ = bodies(pair["tooth_pair"], section)
@@ -164,6 +171,9 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
+        """Solve the contact of the pair whose section tooth_pair is given as JSON text, a key for the
+        cache.
+        """
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
         backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
@@ -192,7 +202,7 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
 
 
 def _request(pair: Values) -> StiffnessRequest:
-    """Return what is asked of the mesh stiffness by a pair's config."""
+    """Return what is asked of the mesh stiffness: section mesh_stiffness of `pair` in SI units."""
     return stiffness_request(MeshStiffness.of_config(pair["mesh_stiffness"]))
 
 
@@ -203,7 +213,11 @@ def _answers(
     stiffness: LoadTable,
     request: StiffnessRequest,
 ) -> PairAnswers:
-    """Return stiffness, error, pressure and root stress of a pair from its contact."""
+    """Return loaded transmission error, contact pressure and root stress of a pair from its contact.
+
+    The error (positions,) m is that without load plus mesh force over average stiffness, at the torque of
+    the request. Pressure and root stress are functions of torque.
+    """
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
     approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
@@ -215,16 +229,21 @@ def _answers(
 def _bodies(
     pair: Values, flanks: GearFlanks
 ) -> Callable[[Values, ToothPair], tuple[tuple[GearFlank, GearFlank], Tensions]]:
-    """Compliance of both bodies of a pair, and the root stress of those with gauges.
+    """Return a function that gives the compliance of both bodies of a pair, and the root stress of those
+    with gauges.
 
-    Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly. Raises
-    ConfigError for a pair whose contact the mesh cannot resolve.
+    It takes plain values and section of the pair. Compliances are kept by the values that decide the
+    nodes, at most those of `flanks` and KEPT_BODIES others. With the same nodes they are scaled by 1/E,
+    which is exact. It raises ConfigError for a pair whose contact the mesh cannot resolve.
     """
     start = ToothPair.of_config(pair["tooth_pair"])
     mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
     cache_by_nodes = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
 
     def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
+        """Return the compliance of pinion and gear of a pair, and the root stress by body, from the cache
+        or solved.
+        """
         key = _nodes(values)
         if key not in cache_by_nodes:
             setup = contact_setup(section, mesh, contact)
@@ -250,12 +269,17 @@ def _bodies(
 
 
 def _tensions(flanks: GearFlanks) -> Tensions:
-    """Return the passing root stress of each body with gauges; it is the same for every Young's modulus."""
+    """Return the root stress by forces on the passing flank, for each body with gauges, by name.
+
+    It does not depend on Young's modulus.
+    """
     return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
 
 
 def _nodes(tooth_pair: Values) -> str:
-    """Return the values on which the nodes of a pair's bodies depend, and their compliance but for Young's
+    """Return a text of all values that decide the nodes of a pair's bodies and their compliance times E.
+
+    These are the values of section tooth_pair without those that only move unloaded flanks, and without
     moduli.
     """
     for key in (*GAPS, *MODULI):
@@ -279,7 +303,7 @@ class VariedBodies:
 
     @classmethod
     def of_stage(cls, transmission: Values, pair: Values, arrays: Arrays) -> Self:
-        """Build the cache with the bodies of the config itself.
+        """Build the cache, filled with the solved bodies of the config itself.
 
         Parameters
         ----------
@@ -293,7 +317,7 @@ class VariedBodies:
         Returns
         -------
         Self
-            The bodies.
+            The cache.
         """
         bodies = cls(ToothPair.of_config(pair))
         for side, section in elastic_gears(Transmission.of_config(transmission)).items():
@@ -301,7 +325,8 @@ class VariedBodies:
         return bodies
 
     def add_bodies(self, machine: Machine, section: Transmission, values: Values) -> Machine:
-        """Put a machine on its bodies; a body is solved where it is not in the cache.
+        """Return a machine with elastic face gears in place of rigid ones; a body not in the cache is
+        solved.
 
         Parameters
         ----------
@@ -310,12 +335,12 @@ class VariedBodies:
         section : Transmission
             Section `transmission` of the machine.
         values : Values
-            Plain values of section `tooth_pair`, as far as they are known.
+            Plain values of section `tooth_pair`; without `face_gear` the pair of the config is taken.
 
         Returns
         -------
         Machine
-            The machine with elastic gears.
+            Copy with elastic gears and the compliance that they put in series with the meshes.
 
         Raises
         ------
@@ -336,7 +361,10 @@ class VariedBodies:
         return replace(machine, bodies=elastic, softening=elastic.softening())
 
     def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
-        """Return a reduced face gear from the cache, or compute it; the oldest one goes."""
+        """Return a reduced face gear from the cache, or solve and keep it.
+
+        With CACHED_BODIES in the cache the oldest one is dropped.
+        """
         key = _body_key(section, pair)
         if key not in self.cache:
             if len(self.cache) >= CACHED_BODIES:
@@ -346,7 +374,7 @@ class VariedBodies:
 
 
 def _body_key(section: BodySection, pair: ToothPair) -> Hashable:
-    """Return a hashable key of everything on which a reduced face gear depends."""
+    """Return a key of everything on which a reduced face gear depends, for the cache of bodies."""
     shape = body_shape(section, pair)
     mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
     fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
@@ -354,14 +382,16 @@ def _body_key(section: BodySection, pair: ToothPair) -> Hashable:
 
 
 def _nominal_teeth(design: PairDesign) -> Hashable:
-    """Return a hashable key of everything on which the nominal teeth of a face gear depend."""
+    """Return a key of everything on which the stiffness of a face gear's fitted teeth depends; no
+    deviations.
+    """
     gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
     pinion = design.pinion.teeth, design.pinion.profile_shift
     return (design.module, design.pressure_angle, pinion, gear, design.shaper)
 
 
 def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
-    """Compute the reduced model of a face gear that bends."""
+    """Solve the elasticity of a face gear's body and return its reduced model: modes and mesh compliance."""
     shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
     solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
     return reduced_body(solution, contact_patch(section, pair), *section.damping)
