@@ -76,10 +76,11 @@ def _corners(design: PairDesign, body: Body) -> Array:
 
 
 def pinion_transform(design: PairDesign, angle: float) -> Array:
-    """Return the transform from the pinion's body frame to the frame of the upper gear.
+    """Return the transform from the pinion's body frame to the frame of the upper gear, in mesh at a
+    distribution angle.
 
-    The pinion is rotated about its own axis so that it meshes at this angle: as if the gear had turned by the
-    angle.
+    The pinion is moved round the gear's axis z by the angle and turned about its own axis as the gear
+    ratio asks.
 
     Parameters
     ----------
@@ -91,7 +92,7 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
     Returns
     -------
     (4, 4) array
-        Homogeneous matrix; rotations dimensionless, translations in m.
+        Homogeneous matrix for column vectors; rotations dimensionless, translations in m.
     """
     teeth = design.pinion.teeth
     transform = _about_axis(angle)
