@@ -29,14 +29,16 @@ def write_gltf(
     """Write whole gears in mesh, modifications included, as a binary glTF scene; assembly errors are left
     out.
 
+    Each gear is placed in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
+
     Parameters
     ----------
     path : str or Path
-        File to write.
+        File to write (.glb), lengths in m.
     design : PairDesign
-        Pair of gears.
+        Pair of gears; all pinions, and both face gears, have the same shape.
     pinions : sequence of (str, float)
-        Name and distribution angle, rad, of each pinion.
+        Name and distribution angle about the gears' axis, rad, of each pinion.
     sides : sequence of str
         Face gears to write: `upper`, `lower` or both.
 
@@ -71,7 +73,9 @@ def write_gltf(
 
 
 def _corners(design: PairDesign, body: Body) -> Array:
-    """Return the corners of a body's triangles (3 n, 3), three rows a triangle, in m."""
+    """Return the corners of the triangles of a whole gear, (3 n, 3) m in its body frame, three rows a
+    triangle.
+    """
     return triangles(solid(design, body, None, PROFILE, WIDTH)).reshape(-1, 3)
 
 

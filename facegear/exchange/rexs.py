@@ -210,7 +210,9 @@ def read_rexs(path: str | Path) -> Unit:
 
 
 def _refuse_other_forms(path: Path) -> None:
-    """Raise FacegearError for the zipped and the JSON form of REXS, by name."""
+    """Look at the first bytes of a file and raise FacegearError for the zipped (.rexsz) and JSON (.rexsj)
+    form of REXS.
+    """
     try:
         with path.open("rb") as file:
             start = file.read(64).lstrip(b"\xef\xbb\xbf \t\r\n")

@@ -149,7 +149,9 @@ def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, A
 
 
 def _append(stream: BinaryIO, record: dict[str, Any]) -> None:
-    """Write one record as a line; raise OSError if the disk took only a part of it."""
+    """Write one record as a line (`_line`) to an unbuffered stream; raise OSError if the disk took only a
+    part of it.
+    """
     line = _line(record).encode()
     if stream.write(line) != len(line):
         raise OSError(errno.ENOSPC, "the line was not written whole")
@@ -162,5 +164,5 @@ def _line(record: dict[str, Any]) -> str:
 
 
 def _digest(text: str) -> str:
-    """Return the first 16 digits of a text's SHA-256."""
+    """Return the first 16 hexadecimal digits of the SHA-256 of a text, to tell whether a line is whole."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -127,8 +127,11 @@ def _cut(solid: int) -> Array:
 
 
 def _require_revolution(solid: int, faces: list[int]) -> None:
-    """Raise StepFault unless both cuts are alike, the centre of mass is on the axis, and area times its way
-    round is the volume.
+    """Raise StepFault unless a solid (gmsh tag) is one of revolution about z, by its two cuts `faces`
+    (gmsh tags).
+
+    Both cuts must be alike, the centre of mass on the axis, and the volume 2 pi times radius times area
+    of a cut (Pappus), within MAX_DIFFERENCE.
     """
     occ = gmsh.model.occ
     cuts = []

@@ -354,5 +354,5 @@ def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, Any
 
 
 def _min_of(values: Array, on: Mask) -> float:
-    """Return the smallest value within a mask, nan if the mask is empty."""
+    """Return the smallest of values (m,) where the booleans `on` (m,) are True, nan if none is."""
     return float(values[on].min()) if on.any() else np.nan

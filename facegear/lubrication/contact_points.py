@@ -294,7 +294,11 @@ def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> Loa
 
 
 def _fill_edges(lines: ContactLines) -> ContactLines:
-    """Fill curvature and slope of contact lines beyond the flank by their nearest values."""
+    """Return contact lines (p, n) whose nan in curvature and slope is replaced by the value of the
+    nearest plane.
+
+    They are nan where the gear's flank ends; lines without any value stay nan.
+    """
     return replace(lines, curvature=_nearest(lines.curvature), slope=_nearest(lines.slope))
 
 

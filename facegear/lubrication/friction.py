@@ -54,17 +54,18 @@ class FrictionModel(Protocol):
         """Whether the coefficient depends on the film ratio, so that the film must be computed first."""
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient.
+        """Compute the friction coefficient at every point.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; viscosity and film ratio may have further axes in front, one bulk
+            temperature each.
 
         Returns
         -------
         (m,) array
-            Coefficient mu, dimensionless.
+            Coefficient mu, dimensionless, with these axes in front if the model depends on them.
         """
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
@@ -215,17 +216,18 @@ class BenedictKelley:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient by `benedict_kelley`.
+        """Compute the friction coefficient by `friction_formulas.benedict_kelley`, viscosity at the bulk
+        temperature.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; line load, u1 + u2, sliding, bulk viscosity and Ra count.
 
         Returns
         -------
         (m,) array
-            Coefficient mu, dimensionless.
+            Coefficient mu, dimensionless, not below 0.
         """
         return benedict_kelley(at.line_load, at.sum_velocity, at.sliding, at.bulk_viscosity, at.ra)
 
@@ -254,12 +256,12 @@ class Xu:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient by `xu`.
+        """Compute the friction coefficient by `friction_formulas.xu`, viscosity at the bulk temperature.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; pressure, radius, u1, u2, bulk viscosity and composite Rq count.
 
         Returns
         -------

@@ -143,8 +143,8 @@ class SplitMachine:
 def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -> Array:
     """Compute the forces of equal, evenly spaced paths that share a load while all of them stay in contact.
 
-    Each path carries W / N, less k_e / N times its lateness beside the others (Singh 2010). A central
-    member that moves in its plane takes up the part of the lateness that goes once round the gear.
+    Each path carries W / N, less k_e times its lateness beyond the mean (Singh 2010). A central member that
+    moves in its plane takes up the part of the lateness that goes once around the gear.
 
     Parameters
     ----------

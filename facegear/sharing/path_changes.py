@@ -166,19 +166,19 @@ def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: floa
 
 
 def with_half_backlash(machine: Machine, half: float) -> Machine:
-    """Return a machine with the same half backlash at every mesh.
+    """Return a machine with the same half backlash at every mesh, whatever it was.
 
     Parameters
     ----------
     machine : Machine
-        With backlash as it is.
+        Its half backlashes are replaced.
     half : float
-        Half the backlash from flank to flank, m.
+        Half the normal backlash from flank to flank, m.
 
     Returns
     -------
     Machine
-        With this backlash.
+        A changed copy.
     """
     return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
 
@@ -189,14 +189,14 @@ def with_scaled_backlash(machine: Machine, factor: float) -> Machine:
     Parameters
     ----------
     machine : Machine
-        With backlash as it is.
+        Its half backlashes are multiplied.
     factor : float
-        On the backlash, dimensionless.
+        Factor on the backlash, dimensionless.
 
     Returns
     -------
     Machine
-        With this backlash.
+        A changed copy.
     """
     return replace(machine, half_backlash=factor * machine.half_backlash)
 

@@ -98,20 +98,20 @@ RUNNING_COLUMNS = (
 
 
 def running_table(run: Running, still: HuntingCycle) -> pd.DataFrame:
-    """Compare the load sharing of the running machine with the quasi-static one.
+    """Compare the load sharing of the running machine with the quasi-static one, group by group.
 
-    K_gamma is given while running, quasi-static over the same cycles and over all. k_v: dynamic factor of the
-    path whose K_gamma is listed. cut: relative error of the quasi-static K_gamma by following a part of the
-    hunting cycle only; sampling: relative change of the running K_gamma K_v by every second sample alone.
-    memory: difference between two starts, over the largest flank force. torque_n_m: largest torque on a
-    pinion.
+    K_gamma (largest of the group) is given while running, quasi-static over the same cycles and over all.
+    k_v: dynamic factor of the mesh whose K_gamma is listed. cut: relative error of the quasi-static
+    K_gamma by following a part of the hunting cycle only; sampling: relative change of the running
+    K_gamma K_v by every second sample alone. memory: difference between two starts, over the largest
+    flank force. torque_n_m: largest torque on a pinion. lead_cycles: mesh cycles run before.
 
     Parameters
     ----------
     run : Running
-        The motion.
+        The motion over the first mesh cycles of the hunting cycle.
     still : HuntingCycle
-        The whole hunting cycle at rest.
+        The whole hunting cycle at rest, quasi-static.
 
     Returns
     -------
