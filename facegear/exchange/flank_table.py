@@ -22,7 +22,7 @@ COLUMNS = ("body", "tooth", "flank", "face_mm", "profile_mm", "deviation_um", *N
 
 
 def flank_table(section: ToothPair) -> pd.DataFrame:
-    """Return nominal points and normals of all flanks with their mean deviations.
+    """Tabulate nominal points and normals on a grid of each flank, with the flanks' mean deviations there.
 
     Parameters
     ----------
@@ -32,8 +32,9 @@ def flank_table(section: ToothPair) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row for each grid point of a flank, columns as COLUMNS; points in mm of tooth 1, see
-        `facegear.teeth.design`.
+        One row for each grid point of the right and left flank of both bodies, columns COLUMNS: face and
+        profile coordinate (mm), deviation (um), point (mm) and unit normal of tooth 1 in the body frame,
+        see `facegear.teeth.design`; column tooth is "all".
 
     Raises
     ------
@@ -45,7 +46,9 @@ def flank_table(section: ToothPair) -> pd.DataFrame:
 
 
 def _rows(design: PairDesign, body: Body, side: str) -> pd.DataFrame:
-    """Return the nominal points of one flank as rows of a table."""
+    """Return the rows of `flank_table` of one flank, `side` one of SIDES, on a grid of GRID_SHAPE points
+    (face, profile).
+    """
     face = flank_face(design, body)
     deepest = (
         float(flank_depth(design)(design.face_gear.inner_radius)) if body == "face_gear" else face.profile[1]

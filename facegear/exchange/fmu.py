@@ -58,26 +58,27 @@ class Variable:
 
     @property
     def causality(self) -> str:
-        """Name of the variable's causality in FMI."""
+        """Causality of the variable in FMI: "input" if it has a start value, else "output"."""
         return "output" if self.start is None else "input"
 
 
 def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
-    """Write the machine as an FMU for co-simulation (FMI 3.0) that starts at rest under the machine's
-    torques.
+    """Write the machine as an FMU for co-simulation (FMI 3.0, C++ sources), at rest under its torques at
+    the start.
 
-    Inputs, which are held through a step: speed of the pinions, rpm, and torque on each body, N m. The rigid
+    Inputs, constant through a step: speed of the pinions, rpm, and torque on each body, N m. The rigid
     rotation of all bodies together is left out, so that only the balance of the torques acts. Outputs:
-    deflection, m, and elastic force, N, of every contact, and force of every body on its bearing, N.
+    deflection, m, and elastic force, N, of every contact, and force of every body on its bearing along x,
+    y, z, N.
 
     Parameters
     ----------
     path : str or Path
-        File to write.
+        File to write (.fmu, a zip archive).
     machine : Machine
-        The machine.
+        The machine; its numbers are written into the header model.hpp.
     speed_rpm : float
-        Speed of the pinions at the start, rpm.
+        Start value of the input speed of the pinions, rpm.
 
     Returns
     -------
@@ -102,12 +103,13 @@ def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
 
 
 def motion_sources() -> dict[str, str]:
-    """Collect the sources of an FMU without the numbers of the machine.
+    """Collect the C++ sources of an FMU that are the same for every machine.
 
     Returns
     -------
     dict
-        Texts by their paths below `sources`: fmu.cpp, and all headers of the motion that it includes.
+        Texts by their paths below `sources`: fmu.cpp, and all headers of the motion that it includes,
+        directly or not; model.hpp, which holds the numbers of a machine, is not among them.
     """
     package, folder = KERNELS
     kernels = files(package) / folder
@@ -120,7 +122,11 @@ def motion_sources() -> dict[str, str]:
 
 
 def _contacts(machine: Machine) -> list[tuple[str, str]]:
-    """Name of each contact, and where its flank or flanks touch, in the words of a variable's description."""
+    """Return for each contact its name and where it touches, in words for a variable's description.
+
+    With kinematics that have flanks apart: all drive flanks, then all back flanks; else one contact for
+    each mesh.
+    """
     layout, contacts = machine.layout, mesh_contacts(machine)
     if not layout.kinematics.flanks_apart:
         return [
@@ -137,7 +143,11 @@ def _contacts(machine: Machine) -> list[tuple[str, str]]:
 
 
 def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
-    """All variables but the time, in the order of their references, which begin at 1."""
+    """Return all variables but the time, in the order of their value references, which begin at 1.
+
+    Speed, torques on bodies, deflections and forces of contacts, forces on bearings. `speed_rpm` is the
+    start value.
+    """
     bodies = machine.layout.body_names
     contacts = _contacts(machine)
     variables = [
@@ -188,7 +198,11 @@ def unique_words(names: Sequence[str]) -> list[str]:
 
 
 def _header(model: Model, speed_rpm: float) -> str:
-    """Write the numbers of the machine as C++; TOKEN stands for what the sources are recognised by."""
+    """Return the C++ header model.hpp with the numbers of the machine's reduced model.
+
+    The word TOKEN stands in it for the instantiation token, which is computed from the header.
+    `speed_rpm` is the start value of the speed.
+    """
     machine, linear, law = model.machine, model.machine.linear, model.system.law
     spins = model.reduction.basis[
         machine.torque_coordinates
@@ -251,13 +265,17 @@ def _header(model: Model, speed_rpm: float) -> str:
 
 
 def _function(name: str, values: AnyArray) -> str:
-    """Return a C++ function that returns an array as a vector."""
+    """Return the C++ text of a function `name` that returns the array, in row-major order, as a
+    std::vector.
+    """
     kind = "Index" if values.dtype.kind == "i" else "double"
     return f"inline std::vector<{kind}> {name}() {{ return {_list(values)}; }}"
 
 
 def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Yield C++ statements that fill facegear::motion::System with the numbers of the machine."""
+    """Yield the C++ statements that fill a facegear::motion::System `s` from `system_numbers`, arrays by
+    name.
+    """
     rows, n = numbers["jacobian"].shape
     contacts = rows - 3 * numbers["ring_stiffness"].size
     yield f"s.n = {n}, s.m = {rows}, s.contacts = {contacts};"
@@ -271,7 +289,9 @@ def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Yield C++ statements that fill one of the force laws of facegear::motion."""
+    """Yield the C++ statements that fill the force law `law` of facegear::motion from its numbers by
+    name.
+    """
     for name, values in numbers.items():
         if name == "table":
             kinds, levels, harmonics = values.shape[:3]
@@ -290,7 +310,7 @@ def _series(values: AnyArray) -> str:
 
 
 def _value(value: Any) -> str:
-    """Return an array or a number as C++ text."""
+    """Return a number as a C++ literal, or an array as an initialiser list."""
     return _list(value) if isinstance(value, np.ndarray) else _text_of(value)
 
 
@@ -300,19 +320,22 @@ def _list(values: AnyArray) -> str:
 
 
 def _text_of(value: float | bool) -> str:
-    """Return a number or a boolean as C++ text."""
+    """Return a number or a boolean as a C++ literal; infinite values become `infinity`."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value).replace("inf", "infinity")
 
 
 def _mesh_period(machine: Machine, speed_rpm: float) -> float:
-    """Time (s) in which a pinion turns by one pitch."""
+    """Return the time (s) in which a pinion turns by one pitch at `speed_rpm`."""
     return 60.0 / (machine.layout.pinion_teeth * speed_rpm)
 
 
 def _description(variables: Sequence[Variable], mesh_period: float, token: str) -> str:
-    """Return `modelDescription.xml`: variables, units, default experiment and structure."""
+    """Return the text of `modelDescription.xml`: variables, units, default experiment and structure.
+
+    `mesh_period` (s) sets stop time and step of the experiment; `token` is the instantiation token.
+    """
     root = Xml.Element(
         "fmiModelDescription",
         fmiVersion="3.0",

@@ -29,14 +29,16 @@ def write_gltf(
     """Write whole gears in mesh, modifications included, as a binary glTF scene; assembly errors are left
     out.
 
+    Each gear is placed in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
+
     Parameters
     ----------
     path : str or Path
-        File to write.
+        File to write (.glb), lengths in m.
     design : PairDesign
-        Pair of gears.
+        Pair of gears; all pinions, and both face gears, have the same shape.
     pinions : sequence of (str, float)
-        Name and distribution angle, rad, of each pinion.
+        Name and distribution angle about the gears' axis, rad, of each pinion.
     sides : sequence of str
         Face gears to write: `upper`, `lower` or both.
 
@@ -71,15 +73,18 @@ def write_gltf(
 
 
 def _corners(design: PairDesign, body: Body) -> Array:
-    """Return the corners of a body's triangles (3 n, 3), three rows a triangle, in m."""
+    """Return the corners of the triangles of a whole gear, (3 n, 3) m in its body frame, three rows a
+    triangle.
+    """
     return triangles(solid(design, body, None, PROFILE, WIDTH)).reshape(-1, 3)
 
 
 def pinion_transform(design: PairDesign, angle: float) -> Array:
-    """Return the transform from the pinion's body frame to the frame of the upper gear.
+    """Return the transform from the pinion's body frame to the frame of the upper gear, in mesh at a
+    distribution angle.
 
-    The pinion is rotated about its own axis so that it meshes at this angle: as if the gear had turned by the
-    angle.
+    The pinion is moved round the gear's axis z by the angle and turned about its own axis as the gear
+    ratio asks.
 
     Parameters
     ----------
@@ -91,7 +96,7 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
     Returns
     -------
     (4, 4) array
-        Homogeneous matrix; rotations dimensionless, translations in m.
+        Homogeneous matrix for column vectors; rotations dimensionless, translations in m.
     """
     teeth = design.pinion.teeth
     transform = _about_axis(angle)

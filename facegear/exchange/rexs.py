@@ -92,7 +92,11 @@ class _Model:
         )
 
     def component(self, kind: str, name: str, *attributes: tuple[str, str, float | None]) -> int:
-        """Add a component with its attributes and return its id."""
+        """Add a component and return its id, numbered from 1.
+
+        `kind` is its REXS type, and each attribute a triple of id, unit and value; None values are left
+        out.
+        """
         number = len(self.components) + 1
         element = Xml.SubElement(self.components, "component", id=str(number), type=kind, name=name)
         for key, unit, value in attributes:
@@ -101,7 +105,9 @@ class _Model:
         return number
 
     def relation(self, kind: str, *members: tuple[str, int]) -> None:
-        """Add a relation between components in their roles."""
+        """Add a relation of a REXS type between components; each member is a pair of role and component
+        id.
+        """
         element = Xml.SubElement(self.relations, "relation", id=str(len(self.relations) + 1), type=kind)
         for role, number in members:
             hint = self.components[number - 1].attrib["type"]
@@ -148,7 +154,9 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
 
 
 def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -> None:
-    """Add the spur gear of a pinion to its shaft, with teeth, flanks and material."""
+    """Add the spur gear of a pinion, with both flanks, and relate it to its shaft and material (component
+    ids).
+    """
     sizes = (
         ("number_of_teeth", "none", spur.teeth),
         ("normal_module", "mm", spur.module),
@@ -202,7 +210,9 @@ def read_rexs(path: str | Path) -> Unit:
 
 
 def _refuse_other_forms(path: Path) -> None:
-    """Raise FacegearError for the zipped and the JSON form of REXS, by name."""
+    """Look at the first bytes of a file and raise FacegearError for the zipped (.rexsz) and JSON (.rexsj)
+    form of REXS.
+    """
     try:
         with path.open("rb") as file:
             start = file.read(64).lstrip(b"\xef\xbb\xbf \t\r\n")
@@ -218,7 +228,9 @@ class _Fault(Exception):
 
 
 def _unit(root: Xml.Element) -> Unit:
-    """Read the gear unit from the root of the file."""
+    """Read the gear unit from the root element `model`; raise _Fault for ids that occur twice or are
+    absent.
+    """
     parts: Parts = {}
     for part in root.iter("component"):
         number = _attribute(part, "id")
@@ -252,12 +264,12 @@ Relations = list[tuple[str, dict[str, str]]]
 
 
 def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
-    """Return the ids of components of the given types."""
+    """Return the ids of the components whose REXS type is among `types`, in the order of the file."""
     return (number for number, part in parts.items() if part.attrib["type"] in types)
 
 
 def _attribute(element: Xml.Element, name: str) -> str:
-    """Return an attribute that every element of its kind must have; refuse an element without it."""
+    """Return the text of an XML attribute that the element must have; raise _Fault without it."""
     if name not in element.attrib:
         attribute_text = (
             ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
@@ -267,7 +279,10 @@ def _attribute(element: Xml.Element, name: str) -> str:
 
 
 def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
-    """Read a shaft with its first cylindrical gear and its bearing."""
+    """Read a shaft (component id `number`) with its first cylindrical gear and its first concept bearing.
+
+    `parts` holds the components by id, `relations` pairs of type and of ids by role.
+    """
     gears = [
         members["part"]
         for kind, members in relations
@@ -292,7 +307,11 @@ def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
 
 
 def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
-    """Read a spur gear; refuse a helical one and one without teeth or module."""
+    """Read a spur gear (component id `gear`); raise _Fault for a helical one and one without teeth or
+    module.
+
+    The pressure angle is that of the first flank that gives one; the bore is half the inner diameter, mm.
+    """
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
         raise _Fault(f"gear {gear} has no number of teeth or no normal module")
@@ -316,7 +335,7 @@ def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
 
 
 def _flanks_of(gear: str, relations: Relations) -> list[str]:
-    """Return the ids of a gear and of its flanks."""
+    """Return the ids in the gear's relations of type "flank": the gear itself and its flanks."""
     return [
         number
         for kind, members in relations
@@ -326,7 +345,11 @@ def _flanks_of(gear: str, relations: Relations) -> list[str]:
 
 
 def _value(part: Xml.Element | None, key: str) -> float | None:
-    """A finite number of a component in the unit of REXS; None where it is not given."""
+    """Return the number of a component's attribute `key` in the unit READ_UNITS; None where it is not
+    given.
+
+    _Fault is raised if it is given twice, in another unit, or is not a finite number.
+    """
     attributes = [] if part is None else part.findall(f"attribute[@id='{key}']")
     if part is not None and len(attributes) > 1:
         raise _Fault(f"component {part.attrib['id']}: attribute {key} stands twice: must be unique")
@@ -352,17 +375,19 @@ def _value(part: Xml.Element | None, key: str) -> float | None:
 
 
 def gear_unit(config: Config) -> Unit:
-    """Return pinions and face gears as shafts on their bearings.
+    """Describe a configured machine as a REXS gear unit: pinions, then face gears, as shafts on their
+    bearings.
 
     Parameters
     ----------
     config : Config
-        The config.
+        The config, with a transmission.
 
     Returns
     -------
     Unit
-        The unit in the units of REXS: stiffness in N/m, Young's modulus in MPa, lengths in mm.
+        Stiffness in N/m (radially the smaller of x and y), Young's modulus in MPa, lengths in mm, mass in
+        kg. Pinions alone have teeth.
 
     Raises
     ------
@@ -388,12 +413,14 @@ def gear_unit(config: Config) -> Unit:
 
 
 def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
-    """Return a pinion as a shaft, with its mass, radial and axial bearing stiffness, and spur gear."""
+    """Return a pinion as a shaft with its teeth; its radial stiffness is the smaller one of x and y, N/m."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z, spur)
 
 
 def _gear(name: str, body: Body) -> Shaft:
-    """Return a face gear as a shaft of its name, mass and bearing."""
+    """Return a face gear as a shaft without teeth; its radial stiffness is the smaller one of x and y,
+    N/m.
+    """
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z)

@@ -28,10 +28,10 @@ class RexsPinions:
 
 
 def known_of_rexs(path: str | Path) -> RexsPinions:
-    """Return the values that a REXS file has for a starting config.
+    """Read the values for a starting config from a REXS file, whose pinions must be equal.
 
-    These are the pinions with their bearings and bodies. The file has no face gears, roles, torques and
-    speeds.
+    These are number, teeth and sizes of the pinions, and mass and bearing stiffness of the first. The
+    file has no face gears, roles, torques and speeds. Bearings of RIGID or stiffer become RIGID.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def known_of_rexs(path: str | Path) -> RexsPinions:
     Returns
     -------
     RexsPinions
-        Values of the equal pinions, and notes.
+        Values of the equal pinions by wish name, and notes on what was changed.
 
     Raises
     ------

@@ -32,14 +32,14 @@ def write(path: str | Path, **arrays: np.ndarray) -> None:
 
 
 def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict[str, np.ndarray]:
-    """Read all arrays of a file.
+    """Read all arrays of an npz file, after it is checked against its manifest.
 
     Parameters
     ----------
     path : str or Path
         File to read (npz).
     shapes : mapping of str to tuple
-        Shape of each array that must exist; None stands for any length.
+        Shape of each array that must exist; None stands for any length. Other arrays are read as well.
 
     Returns
     -------

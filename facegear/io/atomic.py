@@ -20,7 +20,10 @@ NO_SPACE_HINT = "no space left on the disk; free some and run again"
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path in the folder of a path (same suffix) and rename it at the end.
+    """Yield a temporary path to write to, and rename it to `path` at the end, so that a file is whole or
+    absent.
+
+    It is in the same folder, which is made, has the same suffix, and is removed on any error.
 
     Parameters
     ----------
@@ -35,8 +38,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     Raises
     ------
     FacegearError
-        With one line if the disk is full or the path cannot be written; the temporary file is removed on any
-        error.
+        With one line if the disk is full or the path cannot be written.
     """
     path = Path(path)
     _make(path.parent)
@@ -99,7 +101,7 @@ def require_writable_file(path: str | Path) -> None:
 
 
 def _make(folder: Path) -> None:
-    """Make a folder. Raises FacegearError with one line where a file stands in its way or it may not be."""
+    """Make a folder and those above it; raise FacegearError with one line where that is not possible."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
@@ -110,7 +112,7 @@ def _make(folder: Path) -> None:
 
 
 def _cannot_be_written(error: OSError) -> str:
-    """Return in words why the system refused to write."""
+    """Return the words "cannot be written (reason)" for an error of the system."""
     reason = NO_SPACE_HINT if error.errno in NO_SPACE else (error.strerror or str(error)).lower()
     return f"cannot be written ({reason})"
 
@@ -159,7 +161,10 @@ def require_manifest(path: str | Path) -> None:
 
 
 def _files(manifest: Path) -> Mapping[str, Any]:
-    """Return the files that a manifest lists, with their checksums."""
+    """Return the records (bytes, sha256) of the files that a manifest lists, by file name.
+
+    CorruptFile is raised if the manifest is not readable.
+    """
     try:
         files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
     except (ValueError, KeyError, TypeError):
@@ -168,7 +173,9 @@ def _files(manifest: Path) -> Mapping[str, Any]:
 
 
 def verify(path: str | Path) -> None:
-    """Compare a file with the manifest of the stage that wrote it, if one lies beside it.
+    """Compare a file's size and SHA-256 with the manifest beside it that lists it, if there is one.
+
+    Manifests are the files `*.provenance.json` of the stages in the same folder.
 
     Parameters
     ----------
@@ -178,7 +185,7 @@ def verify(path: str | Path) -> None:
     Raises
     ------
     CorruptFile
-        Where size or checksum differ, or the file is missing.
+        Where size or checksum differ, the file is missing or cannot be read, or a manifest is not readable.
     """
     path = Path(path)
     try:

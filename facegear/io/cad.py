@@ -100,13 +100,13 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
 
 
 def _with_product(content: str, name: str) -> tuple[str, int]:
-    """Return a STEP file whose products have a name, and their number."""
+    """Return the text of a STEP file with the name of every product replaced, and the number of products."""
     return PRODUCT.subn(lambda _: f"PRODUCT('{name}','{name}'", content)
 
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Keep what OpenCASCADE prints past Python from the terminal."""
+    """Discard what is written to file descriptor 1 (OpenCASCADE prints past Python) within the context."""
     sys.stdout.flush()
     standard_output = os.dup(1)
     with open(os.devnull, "wb") as nowhere:
@@ -119,8 +119,9 @@ def _silent() -> Iterator[None]:
 
 
 def _surface(points: Array) -> int:
-    """Add the B-spline surface through a grid of points (n, m, 3) in mm, parameters evenly spaced; return its
-    tag.
+    """Add to gmsh the bicubic B-spline surface through a grid of points (n, m, 3) in mm; return its tag.
+
+    Parameters are evenly spaced, and the degree falls where there are fewer than four points along an axis.
     """
     poles, knots, degrees = points, [], []
     for axis in (0, 1):

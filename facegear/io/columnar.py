@@ -26,14 +26,14 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
 
 
 def read(path: str | Path, columns: Sequence[str] = ()) -> pd.DataFrame:
-    """Read a table that must hold some columns.
+    """Read a parquet table that must hold some columns, after it is checked against its manifest.
 
     Parameters
     ----------
     path : str or Path
         Path of the file.
     columns : Sequence[str]
-        Columns that the table must hold.
+        Columns that the table must hold; all others are read as well.
 
     Returns
     -------

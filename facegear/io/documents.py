@@ -18,7 +18,7 @@ from facegear.io.atomic import NO_SPACE, NO_SPACE_HINT, atomic_path, verify
 
 
 def _plain(value: Any) -> Any:
-    """Return NumPy values as plain ones; refuse any other object."""
+    """Convert a NumPy scalar or array for json; raise TypeError for any other object."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):
@@ -75,7 +75,9 @@ def read(path: str | Path, keys: Sequence[str] = ()) -> dict[str, Any]:
 
 
 def read_journal(path: str | Path, identity: str) -> list[dict[str, Any]]:
-    """Read the records of a journal begun under the same identity; those after a damaged line are not read.
+    """Read the records of a journal that was begun under the same identity, up to the first damaged line.
+
+    The first line of the file is a digest of the identity, each other line a record with its digest.
 
     Parameters
     ----------
@@ -87,7 +89,7 @@ def read_journal(path: str | Path, identity: str) -> list[dict[str, Any]]:
     Returns
     -------
     list[dict[str, Any]]
-        The records.
+        The records; empty without a file, or if it has another identity.
     """
     path = Path(path)
     if not path.is_file():
@@ -109,9 +111,11 @@ def read_journal(path: str | Path, identity: str) -> list[dict[str, Any]]:
 
 @contextmanager
 def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, Any]], None]]:
-    """Yield a function that appends one record; the journal is begun anew unless its identity is the same.
+    """Yield a function that appends one record to a journal at once, so that a kill loses at most the
+    last line.
 
-    A damaged end is cut off first.
+    The journal is begun anew if its identity differs, which drops its records; a damaged end is cut off
+    first.
 
     Parameters
     ----------
@@ -123,7 +127,7 @@ def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, A
     Yields
     ------
     Callable[[dict[str, Any]], None]
-        The function.
+        Function that takes a record, writes it as a line and returns nothing.
 
     Raises
     ------
@@ -145,7 +149,9 @@ def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, A
 
 
 def _append(stream: BinaryIO, record: dict[str, Any]) -> None:
-    """Write one record as a line; raise OSError if the disk took only a part of it."""
+    """Write one record as a line (`_line`) to an unbuffered stream; raise OSError if the disk took only a
+    part of it.
+    """
     line = _line(record).encode()
     if stream.write(line) != len(line):
         raise OSError(errno.ENOSPC, "the line was not written whole")
@@ -158,5 +164,5 @@ def _line(record: dict[str, Any]) -> str:
 
 
 def _digest(text: str) -> str:
-    """Return the first 16 digits of a text's SHA-256."""
+    """Return the first 16 hexadecimal digits of the SHA-256 of a text, to tell whether a line is whole."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -14,23 +14,24 @@ def read_part(
     may_be_empty: bool = False,
     text: Sequence[str] = (),
 ) -> Any:
-    """Read a table, a mapping of arrays or a record.
+    """Read a file of a stage by its suffix: arrays (npz), a columnar table (parquet), a record (json) or
+    else csv.
 
     Parameters
     ----------
     path : Path
         Path of the file.
     holds : Mapping[str, tuple[int | None, ...]] | Sequence[str]
-        Columns of a table, shapes of arrays or keys of a record.
+        What must be there: columns of a table, shapes of arrays by name, or keys of a record.
     may_be_empty : bool
-        Whether a table may have no rows.
+        Whether a csv table may have no rows.
     text : Sequence[str]
-        Columns that stay text.
+        Columns of a csv table that stay text.
 
     Returns
     -------
     Any
-        The content.
+        A DataFrame, a dictionary of arrays, or a dictionary.
 
     Raises
     ------
@@ -51,14 +52,16 @@ def read_part(
 
 
 def write_part(path: str | Path, part: Any) -> None:
-    """Write csv, parquet, npz, json or vtu; bytes are written as they are.
+    """Write a part of a stage's results in the format of the path's suffix: csv, parquet, npz, vtu or
+    else json.
 
     Parameters
     ----------
     path : str or Path
         Path of the file.
     part : Any
-        The content.
+        A DataFrame (csv, parquet), a mapping of arrays (npz), the arguments of `write_vtu` after the path
+        (vtu) or a dictionary (json). Bytes are written as they are, whatever the suffix.
     """
     path = Path(path)
     if isinstance(part, bytes):

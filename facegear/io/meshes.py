@@ -87,11 +87,11 @@ def write_inp(
 
 
 def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
-    """Write a line for each row of a table, all lines formatted at once."""
+    """Write each row of a table with the format `line`, which has a place for each column, to the stream."""
     stream.write(line * len(table) % tuple(table.ravel().tolist()))
 
 
 def _list(stream: TextIO, labels: Integers) -> None:
-    """Write labels in lines of twelve."""
+    """Write labels, separated by commas, in lines of twelve to the stream."""
     for start in range(0, len(labels), 12):
         stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

@@ -43,7 +43,7 @@ WHOLE_SVG, TAIL = re.compile(r"(</svg>|<svg[^<]*/>)\s*$"), 1000
 
 
 def read_svg(path: Path) -> str:
-    """Return the text of a drawing.
+    """Return the text of a drawing, after it is checked against its manifest and for being whole.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def read_svg(path: Path) -> str:
     Returns
     -------
     str
-        The text.
+        The text of the svg file.
 
     Raises
     ------

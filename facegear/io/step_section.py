@@ -38,7 +38,8 @@ class StepFault(Exception):
 
 
 def read_section(path: str | Path) -> list[tuple[float, float]]:
-    """Read the section of the body in a STEP file.
+    """Read the outline of a gear body's section from a STEP file, a solid of revolution or its half
+    section.
 
     The axis is that of z through the origin. A half section may lie in any half plane through it: r is the
     distance from the axis. The file names its own unit. Curves become straight edges within CHORD.
@@ -51,7 +52,7 @@ def read_section(path: str | Path) -> list[tuple[float, float]]:
     Returns
     -------
     list of tuple of float
-        Corners (r, z) in mm, anticlockwise from the innermost one.
+        Corners (r, z) in mm, anticlockwise in the r-z plane from the one of smallest r, then z.
 
     Raises
     ------
@@ -67,7 +68,7 @@ def read_section(path: str | Path) -> list[tuple[float, float]]:
 
 
 def _require_file(path: Path) -> None:
-    """Refuse what is no file, or a file that is too long."""
+    """Raise StepFault for a path that is no file, or a file longer than LARGEST_FILE."""
     try:
         size = path.stat().st_size
     except (OSError, ValueError):
@@ -79,7 +80,9 @@ def _require_file(path: Path) -> None:
 
 
 def _read_shape(path: str | Path) -> tuple[int, int]:
-    """Return dimension and tag of the only solid or face of the file."""
+    """Import the file into gmsh; return dimension (2 face, 3 solid) and tag of its only shape, or raise
+    StepFault.
+    """
     try:
         shapes = gmsh.model.occ.importShapes(str(path), format="step")
     except Exception as error:  # the only class that gmsh raises
@@ -91,7 +94,7 @@ def _read_shape(path: str | Path) -> tuple[int, int]:
 
 
 def _count_shapes(shapes: list[tuple[int, int]]) -> str:
-    """Say in words how many solids, faces, curves and points a file holds."""
+    """Say in words how many solids, faces, curves and points there are among (dimension, tag) pairs."""
     dimensions = [dimension for dimension, _ in shapes]
     names = {3: "solids", 2: "faces without a solid", 1: "curves", 0: "points"}
     counts = [f"{dimensions.count(key)} {name}" for key, name in names.items() if key in dimensions]
@@ -99,7 +102,11 @@ def _count_shapes(shapes: list[tuple[int, int]]) -> str:
 
 
 def _cut(solid: int) -> Array:
-    """Outline (n, 2) of a solid of revolution at the first of two half planes."""
+    """Cut a solid (gmsh tag) by two half planes, check that it is one of revolution, and return the first
+    outline.
+
+    The outline is (n, 2): distances r from the z axis and heights z, in mm.
+    """
     occ = gmsh.model.occ
     low, high = np.reshape(occ.getBoundingBox(3, solid), (2, 3))
     reach = 1.1 * float(np.hypot(*np.maximum(-low, high)[:2]))
@@ -120,8 +127,11 @@ def _cut(solid: int) -> Array:
 
 
 def _require_revolution(solid: int, faces: list[int]) -> None:
-    """Raise StepFault unless both cuts are alike, the centre of mass is on the axis, and area times its way
-    round is the volume.
+    """Raise StepFault unless a solid (gmsh tag) is one of revolution about z, by its two cuts `faces`
+    (gmsh tags).
+
+    Both cuts must be alike, the centre of mass on the axis, and the volume 2 pi times radius times area
+    of a cut (Pappus), within MAX_DIFFERENCE.
     """
     occ = gmsh.model.occ
     cuts = []
@@ -143,7 +153,11 @@ def _require_revolution(solid: int, faces: list[int]) -> None:
 
 
 def _outline(face: int) -> Array:
-    """Corners (n, 2) of the closed line round a face through the axis, in mm."""
+    """Return the corners (n, 2), r and z in mm, of the one closed line around a face (gmsh tag) in a half
+    plane.
+
+    StepFault is raised for a hole or an open line.
+    """
     curves = {tag: _sample_curve(tag) for _, tag in gmsh.model.getBoundary([(2, face)], oriented=False)}
     first = next(iter(curves))
     line = [curves.pop(first)]
@@ -161,7 +175,11 @@ def _outline(face: int) -> Array:
 
 
 def _plane(points: Array) -> Array:
-    """Distances from the axis and heights of points (n, 3) in one half plane."""
+    """Convert points (n, 3) in one half plane through the z axis to (n, 2): distance r from the axis and
+    z, in mm.
+
+    StepFault is raised if they reach the axis or lie in no such half plane.
+    """
     angles = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     r = np.hypot(points[:, 0], points[:, 1])
     _require_size(float(r.max()))
@@ -173,17 +191,20 @@ def _plane(points: Array) -> Array:
 
 
 def _require_size(radius: float) -> None:
-    """Refuse an outer radius, mm, that shows a wrong unit."""
+    """Raise StepFault for an outer radius (mm) outside SMALLEST..LARGEST, which shows a wrong unit."""
     if not SMALLEST <= radius <= LARGEST:
         bounds = f"{SMALLEST:g} to {LARGEST:g} mm are read"
         raise StepFault(f"its outer radius is {radius:.4g} mm by the unit of the file; {bounds}")
 
 
 def _sample_curve(curve: int) -> Array:
-    """Points (n, 3) of a curve from end to end, close enough for straight edges."""
+    """Return points (n, 3), mm, along a curve (gmsh tag) from end to end, so many that straight edges are
+    close to it.
+    """
     (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
 
     def points(count: int) -> Array:
+        """Return the points (count + 1, 3), mm, at evenly spaced parameters of the curve."""
         parameters = np.linspace(low, high, count + 1)
         return np.reshape(gmsh.model.getValue(1, curve, parameters), (-1, 3))
 
@@ -196,7 +217,11 @@ def _sample_curve(curve: int) -> Array:
 
 
 def _close(fine: Array) -> bool:
-    """Whether every fourth of the points makes a line close to the points between."""
+    """Tell whether straight edges through every fourth of points (4 n + 1, 3), mm, are close to the
+    points between.
+
+    Close: within CHORD, and no two successive edges differ by more than TURN in direction.
+    """
     corners = fine[::4]
     ways = np.diff(corners, axis=0)
     lengths = np.linalg.norm(ways, axis=1)
@@ -207,8 +232,9 @@ def _close(fine: Array) -> bool:
 
 
 def _order_corners(points: Array) -> Array:
-    """Return the outline without corners on a straight line, anticlockwise from the one of smallest r, then
-    z.
+    """Return the corners (r, z) of an outline (n, 2), without those on a straight line.
+
+    They run anticlockwise from the one of smallest r, then smallest z.
     """
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]

@@ -34,16 +34,17 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
 def read(
     path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False, text: Sequence[str] = ()
 ) -> pd.DataFrame:
-    """Read a table that must hold some columns, whose numbers there must be finite.
+    """Read a csv table that must hold some columns, whose numbers there must be finite.
 
-    Columns of NAMES and `text` stay text, so that a body may be called 12, NA or nan.
+    Columns of NAMES and `text` stay text, so that a body may be called 12, NA or nan. An empty cell is
+    nan elsewhere. The file is checked against its manifest first.
 
     Parameters
     ----------
     path : str or Path
         Path of the file.
     columns : Sequence[str]
-        Columns that the table must hold.
+        Columns that the table must hold; all others are read as well and may hold nan.
     allow_empty : bool
         Whether the table may have no rows.
     text : Sequence[str]
@@ -145,7 +146,7 @@ def read_workbook(path: str | Path) -> dict[str, pd.DataFrame]:
 
 
 def _sheet(book: pd.ExcelFile, name: str) -> pd.DataFrame:
-    """One sheet; an empty cell in a column of NAMES is an empty text."""
+    """Read one sheet of a workbook; an empty cell is an empty text in a column of NAMES, else nan."""
     texts = dict.fromkeys(NAMES, str)
     frame = pd.read_excel(book, name, converters=texts, keep_default_na=False, na_values=[""])
     return frame.fillna({column: "" for column in frame.columns if column in texts})

@@ -33,7 +33,9 @@ from facegear.teeth.design import PairDesign
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:
     """Compute force and moments of friction over the mesh force at each position of a pitch.
 
-    The mesh force is the force along the line of action that carries the torque.
+    At each hat friction acts on the pinion against its sliding velocity over the gear, with the
+    coefficient times the normal force; the gear gets the opposite force. The mesh force is torque over
+    the pinion's base radius, the force along the line of action that carries the torque.
 
     Parameters
     ----------
@@ -47,9 +49,9 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
     Returns
     -------
     (p, 5) array
-        For each position, rising: force on the pinion along x, y and -z of the mesh frame (tangential, along
-        the pinion's axis, along the gear's axis), dimensionless; moment on the pinion about its axis and on
-        the face gear about its own, m.
+        For each position, rising: force on the pinion along x, y and -z of the mesh frame (tangential,
+        along the pinion's axis, along the gear's axis), dimensionless; moment on the pinion about its
+        axis and on the face gear about its own, each over the mesh force, m.
     """
     positions, row = np.unique(hats.position, return_inverse=True)
     sliding = hats.sliding
@@ -67,21 +69,22 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
 
 
 def excitation_table(pair: LoadedPair, states: Sequence[Running], design: PairDesign) -> pd.DataFrame:
-    """Tabulate force and moments of friction over the mesh force.
+    """Tabulate force and moments of friction over the mesh force, by which friction disturbs the motion.
 
     Parameters
     ----------
     pair : LoadedPair
         The lubricated pair.
     states : Sequence[Running]
-        State of the flanks at each torque.
+        State of the flanks at each torque of the pair, with its friction coefficients.
     design : PairDesign
         Geometry of the pair.
 
     Returns
     -------
     pd.DataFrame
-        One row for each torque and position, columns EXCITATION_COLUMNS.
+        One row for each torque and position, columns EXCITATION_COLUMNS: torque (N m), position in
+        pitches, and the five ratios of `friction_ratios`, with the moments in mm.
     """
     frames = []
     for contact, state in zip(pair.contacts, states, strict=True):
@@ -109,16 +112,17 @@ def by_torque_table(
     pair : LoadedPair
         The lubricated pair.
     states : Sequence[Running]
-        State of the flanks at each torque.
+        State of the flanks at each torque of the pair, at `speed`.
     speed : float
         Pinion speed, rad/s.
     limits : Limits
-        Limits of temperatures and films.
+        Limits of temperatures and films; safeties are nan where one is unknown.
 
     Returns
     -------
     pd.DataFrame
-        One row for each torque, columns BY_TORQUE_COLUMNS.
+        One row for each torque, columns BY_TORQUE_COLUMNS, units in the names. Flash and films are the
+        extremes away from edges, with the place of the largest flash.
     """
     rows = [
         _torque_row(pair.lubrication, contact, state, speed, limits)
@@ -130,7 +134,12 @@ def by_torque_table(
 def _torque_row(
     lubrication: Lubrication, contact: LoadedContact, state: Running, speed: float, limits: Limits
 ) -> dict[str, object]:
-    """Return the row of table by_torque: losses, temperatures and film at one torque."""
+    """Return one row of `by_torque_table`, keyed by BY_TORQUE_COLUMNS, for the contact and state of one
+    torque.
+
+    `speed` is the pinion's, rad/s. Films and the place of the largest flash are nan where all load is
+    near edges.
+    """
     torque, points, hats = contact.torque, contact.points, contact.hats
     on, factor, power = points.inside, loss_factors(hats), torque * speed
     rise = np.where(on, state.flash, -1.0)
@@ -189,19 +198,22 @@ def position_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
     pair : LoadedPair
         The lubricated pair.
     states : Sequence[Running]
-        State of the flanks at each torque.
+        State of the flanks at each torque of the pair.
 
     Returns
     -------
     pd.DataFrame
-        One row for each torque and position, columns POSITION_COLUMNS; nan where edges carry all.
+        One row for each torque and position, columns POSITION_COLUMNS. Films are nan where edges carry
+        all load, and flash is 0 there.
     """
     frames = [_positions(contact, state) for contact, state in zip(pair.contacts, states, strict=True)]
     return pd.concat(frames, ignore_index=True)
 
 
 def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
-    """Return loss, flash temperature and film over the positions of a pitch."""
+    """Return the rows of `position_table` of one torque: columns POSITION_COLUMNS, one row a position of
+    the pitch.
+    """
     torque, points, hats = contact.torque, contact.points, contact.hats
     factor = loss_factors(hats)
     rows = np.searchsorted(factor.positions, hats.position)
@@ -219,19 +231,20 @@ def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
 
 
 def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
-    """Tabulate how much of the loss lies outside each limit of the friction model.
+    """Tabulate which part of the loss is at points outside each limit of the friction model.
 
     Parameters
     ----------
     pair : LoadedPair
         The lubricated pair.
     states : Sequence[Running]
-        State of the flanks at each torque.
+        State of the flanks at each torque of the pair.
 
     Returns
     -------
     pd.DataFrame
-        Columns LIMIT_COLUMNS.
+        One row a torque and limit, columns LIMIT_COLUMNS: model, limit in words, its source, torque (N m)
+        and part of the loss outside it (%). No rows for a model without limits.
     """
     model, rows = pair.lubrication.friction, []
     for contact, state in zip(pair.contacts, states, strict=True):
@@ -244,7 +257,7 @@ def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
 
 
 def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
-    """Tabulate loss and temperature at every torque and speed.
+    """Tabulate loss, efficiency, temperature and film at every torque and speed.
 
     Parameters
     ----------
@@ -256,7 +269,8 @@ def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        Columns MAP_COLUMNS; empty where a body would pass the flash point of the oil.
+        One row a torque and speed, columns MAP_COLUMNS; all but torque and speed are nan where a body
+        would pass the flash point of the oil.
 
     Raises
     ------
@@ -268,7 +282,10 @@ def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
 
 
 def _map_row(contact: LoadedContact, speed: float, lubrication: Lubrication) -> tuple[float, ...]:
-    """Return the row of the efficiency map at one torque and speed, nan where it gets too hot."""
+    """Return one row of `map_table`, in the order of MAP_COLUMNS, at one torque and a pinion speed in rpm.
+
+    All but torque and speed are nan where a body passes the oil's flash point.
+    """
     key = contact.torque, speed
     try:
         state = running(contact, speed * RPM, lubrication)
@@ -281,21 +298,22 @@ def _map_row(contact: LoadedContact, speed: float, lubrication: Lubrication) -> 
 
 
 def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, AnyArray]:
-    """Return the local quantities of every loaded plane of a contact line.
+    """Return load, velocities, friction, flash and film at every contact point of all torques, to be
+    stored.
 
     Parameters
     ----------
     pair : LoadedPair
         The lubricated pair.
     states : Sequence[Running]
-        State of the flanks at each torque.
+        State of the flanks at each torque of the pair, at `speed`.
     speed : float
         Pinion speed, rad/s.
 
     Returns
     -------
     dict of (m,) arrays
-        Arrays LOCAL_ARRAYS, each in the unit that its name says, and the speed (1,).
+        Arrays LOCAL_ARRAYS, torque by torque, each in the unit that its name says, and the speed (1,).
     """
     rows = [
         _local(contact.points, state, speed) for contact, state in zip(pair.contacts, states, strict=True)
@@ -305,7 +323,9 @@ def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> d
 
 
 def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, AnyArray]:
-    """Return the local values at all contact points as arrays, SI units."""
+    """Return the arrays LOCAL_ARRAYS but the speed, for the m points of one torque; `speed` is the
+    pinion's, rad/s.
+    """
     return {
         "torque_n_m": points.torque,
         "position": points.position,
@@ -334,5 +354,5 @@ def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, Any
 
 
 def _min_of(values: Array, on: Mask) -> float:
-    """Return the smallest value within a mask, nan if the mask is empty."""
+    """Return the smallest of values (m,) where the booleans `on` (m,) are True, nan if none is."""
     return float(values[on].min()) if on.any() else np.nan

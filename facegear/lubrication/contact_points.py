@@ -59,26 +59,31 @@ class ContactPoints:
 
     @property
     def ellipse_force(self) -> Array:
-        """Force (N) of an ellipse of the largest pressure, the strip's width and the line's length."""
+        """Force (m,) N of an elliptic Hertzian contact with the point's largest pressure, half width and
+        half length.
+
+        It is 2/3 pi a b p, for film formulas of elliptic contacts.
+        """
         return 2 / 3 * np.pi * self.half_width * self.half_length * self.pressure
 
 
 def stored_lines(design: PairDesign, arrays: Arrays, unloaded_error: Mapping[float, float]) -> ContactLines:
-    """Return the contact lines of stored arrays.
+    """Compute the unloaded contact lines of the positions and tooth pairs in stored pressure arrays.
 
     Parameters
     ----------
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`; their `contact_position`, `contact_tooth`
+        and the axial coordinates of the lattice `point_m` are used.
     unloaded_error : Mapping[float, float]
-        Unloaded transmission error (m) by position.
+        Unloaded transmission error (m) by position, in pitches.
 
     Returns
     -------
     ContactLines
-        The lines.
+        A row for each entry of `contact_position`, a column for each plane across the pinion's axis.
 
     Raises
     ------
@@ -90,26 +95,28 @@ def stored_lines(design: PairDesign, arrays: Arrays, unloaded_error: Mapping[flo
 
 
 def contact_points(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: float) -> ContactPoints:
-    """Return the points of the line loads in stored arrays.
+    """Collect load, curvature, pressure and velocities at every loaded plane of the stored contact lines.
 
-    Beside an edge the curvature and slope are those of the nearest plane that has any, and the pressure that
-    of a long strip: they serve the friction coefficient alone. Lines without any are left out.
+    Beside an edge the curvature and slope are those of the nearest plane that has any, and the pressure
+    that of a long strip: they serve the friction coefficient alone. Contact lines without any curvature
+    are left out.
 
     Parameters
     ----------
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`; each entry of the `line_...` arrays is a
+        point.
     lines : ContactLines
-        Contact lines of the arrays.
+        Contact lines of the arrays, from `stored_lines`.
     modulus : float
-        Contact modulus E*, Pa.
+        Contact modulus E* of both flanks together, Pa.
 
     Returns
     -------
     ContactPoints
-        The points (m,).
+        The points (m,) of all torques; `scaled_load` is still `line_load`, which `loaded_contacts` changes.
     """
     complete_lines = _fill_edges(lines)
     position, tooth = arrays["contact_position"], arrays["contact_tooth"]
@@ -160,9 +167,12 @@ class LoadedContact:
 
     @property
     def weights(self) -> Array:
-        """Loss (m,) N m of each point at a friction coefficient of 1 and the pinion's 1 rad/s.
+        """Mean loss over the pitch (m,) N m that each point stands for, at a friction coefficient of 1
+        and 1 rad/s.
 
-        The loss of hats without a point is spread as `at_hats` takes their mean.
+        `sum(weights * friction) * speed` is the loss in W. A hat's loss counts at its nearest point. The
+        loss of hats whose line has no point is spread over all points in proportion to their load, as
+        `at_hats` averages.
         """
         sliding_loss = self.hats.force * self.hats.sliding / self.positions
         loads, has_point = self.points.line_load * self.points.length, self.nearest >= 0
@@ -173,7 +183,7 @@ class LoadedContact:
         return point_weights
 
     def at_hats(self, values: Array) -> Array:
-        """Average values of contact points over each basis function (hat), weighted by load.
+        """Take values of contact points at the hats, the basis functions of the contact force.
 
         Parameters
         ----------
@@ -183,7 +193,8 @@ class LoadedContact:
         Returns
         -------
         (h,) array
-            Value at each hat in the same unit; the mean, weighted with load, where a line has no point.
+            For each hat the value of its nearest point (`nearest`), in the same unit. Where its line has
+            no point, the load-weighted mean over all points; 0 without any point.
         """
         weights = self.points.line_load * self.points.length
         mean = np.average(values, weights=weights) if weights.size else 0.0
@@ -191,19 +202,19 @@ class LoadedContact:
 
 
 def loaded_contacts(contact_places: ContactPoints, hats: HatSlip) -> tuple[LoadedContact, ...]:
-    """Separate contact points and basis functions by torque.
+    """Group contact points and basis functions (hats) by torque, and assign each hat its nearest point.
 
     Parameters
     ----------
     contact_places : ContactPoints
-        Points of all torques.
+        Points of all torques, from `contact_points`.
     hats : HatSlip
-        Hats of all torques.
+        Hats of all torques, from `hat_slip`.
 
     Returns
     -------
     tuple[LoadedContact, ...]
-        One contact for each torque, rising.
+        One contact for each torque of the hats, rising, with `scaled_load` computed.
     """
     return tuple(
         _contact(
@@ -219,35 +230,35 @@ Loads = TypeVar("Loads", ContactPoints, HatSlip)
 
 
 def select(loads: Loads, on: Mask | Integers | slice) -> Loads:
-    """Select some of the contact points or basis functions.
+    """Select entries of contact points or of hats: every field is indexed alike along its first axis.
 
     Parameters
     ----------
     loads : Loads
-        Points or hats.
+        ContactPoints or HatSlip with m entries.
     on : mask, indices or slice
-        Which ones: (m,) booleans or indices.
+        Entries to take: booleans (m,), indices or a slice.
 
     Returns
     -------
     Loads
-        The selected ones.
+        A new object of the same class with these entries.
     """
     return replace(loads, **{field.name: getattr(loads, field.name)[on] for field in fields(loads)})
 
 
 def concatenate(parts: Sequence[Loads]) -> Loads:
-    """Join contact points, or basis functions, of several contacts.
+    """Join contact points, or hats, of several contacts: every field is concatenated along its first axis.
 
     Parameters
     ----------
     parts : Sequence[Loads]
-        At least one part.
+        At least one part, all ContactPoints or all HatSlip.
 
     Returns
     -------
     Loads
-        All of them in order.
+        A new object of the same class with all entries in order.
     """
     names = [field.name for field in fields(parts[0])]
     return replace(
@@ -256,7 +267,12 @@ def concatenate(parts: Sequence[Loads]) -> Loads:
 
 
 def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> LoadedContact:
-    """Combine points of contact and slip of basis functions at one torque."""
+    """Build the contact of one torque (N m) from its points and hats.
+
+    Each hat gets the point of its plane on its contact line (same position and tooth pair), or else the
+    nearest point of the line, or -1. `scaled_load` multiplies `line_load` so that a line carries the
+    force of its hats.
+    """
     positions, row = np.unique(np.concatenate([contact_places.position, hats.position]), return_inverse=True)
     line = row * PAIRS.size + np.concatenate([contact_places.tooth, hats.tooth]) - PAIRS[0]
     count, planes = (
@@ -278,13 +294,18 @@ def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> Loa
 
 
 def _fill_edges(lines: ContactLines) -> ContactLines:
-    """Fill curvature and slope of contact lines beyond the flank by their nearest values."""
+    """Return contact lines (p, n) whose nan in curvature and slope is replaced by the value of the
+    nearest plane.
+
+    They are nan where the gear's flank ends; lines without any value stay nan.
+    """
     return replace(lines, curvature=_nearest(lines.curvature), slope=_nearest(lines.slope))
 
 
 def _nearest(values: Array) -> Array:
-    """Replace each nan of rows (p, n) by the value of the nearest finite column; rows without any
-    stay nan.
+    """Replace each nan in rows (p, n) by the nearest finite value of its row, the one before it on a tie.
+
+    Distance counts in columns. Rows without a finite value stay nan.
     """
     columns = np.arange(values.shape[1])
     is_finite = np.isfinite(values)
@@ -297,7 +318,9 @@ def _nearest(values: Array) -> Array:
 
 
 def _rows(arrays: Arrays) -> Integers:
-    """Return the number of the contact line (m,) to which every loaded plane belongs."""
+    """Return for each loaded plane (m,) the index of its contact line in `contact_position` and
+    `contact_tooth`.
+    """
     keys = zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True)
     row = {key: number for number, key in enumerate(keys)}
     plane_keys = zip(arrays["line_position"].tolist(), arrays["line_tooth"].tolist(), strict=True)
@@ -305,7 +328,11 @@ def _rows(arrays: Arrays) -> Integers:
 
 
 def _half_lengths(arrays: Arrays, row: Integers) -> Array:
-    """Return half the loaded length (m,), m, of the contact line to which each plane belongs."""
+    """Return half the loaded length of each point's contact line at its torque, (m,), m.
+
+    `row` (m,) is the index of the contact line from `_rows`; the length is the sum of the loaded planes'
+    lengths.
+    """
     _, torque = np.unique(arrays["line_torque_n_m"], return_inverse=True)
     _, line = np.unique(torque * (row.max() + 1) + row, return_inverse=True)
     whole = np.zeros(line.max(initial=0) + 1)

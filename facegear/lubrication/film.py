@@ -19,20 +19,21 @@ def line_film(
 ) -> Array:
     """Compute the smallest film of a line contact: Dowson and Higginson 1966, 2.65 R U^0.7 G^0.54 W^-0.13.
 
-    All but the modulus are numbers or arrays of one shape.
+    U = eta u/(E_r R), G = alpha E_r and W = w/(E_r R). All but the modulus are numbers or arrays of one
+    shape.
 
     Parameters
     ----------
     radius : Numbers
         Relative radius of curvature R, m.
     entrainment_speed : Numbers
-        (u1 + u2)/2 across the line, m/s.
+        u = (u1 + u2)/2 across the line, m/s.
     line_load : Numbers
-        Load over length, N/m.
+        Load over length w, N/m.
     viscosity : Numbers
-        Dynamic viscosity at the bulk temperature, Pa s.
+        Dynamic viscosity eta at the bulk temperature, Pa s.
     pressure_coefficient : Numbers
-        Pressure coefficient of the viscosity, 1/Pa.
+        Pressure coefficient alpha of the viscosity, 1/Pa.
     reduced_modulus : float
         E_r = 2 E*, Pa.
 
@@ -59,23 +60,23 @@ def elliptic_film(
 ) -> Array:
     """Compute the smallest film of an elliptic contact rolled across its longer axis.
 
-    Hamrock and Dowson 1977: 3.63 R U^0.68 G^0.49 W^-0.073 (1 - e^-0.68k). All but the modulus are numbers or
-    arrays of one shape.
+    Hamrock and Dowson 1977: 3.63 R U^0.68 G^0.49 W^-0.073 (1 - e^-0.68k) with U = eta u/(E_r R), G =
+    alpha E_r and W = F/(E_r R^2). All but the modulus are numbers or arrays of one shape.
 
     Parameters
     ----------
     radius : Numbers
         Relative radius of curvature R, m.
     entrainment_speed : Numbers
-        (u1 + u2)/2 across the line, m/s.
+        u = (u1 + u2)/2 across the line, m/s.
     force : Numbers
-        Force of the contact, N.
+        Force F of the contact, N.
     ellipticity : Numbers
         Axis along the line over that across it, k, dimensionless.
     viscosity : Numbers
-        Dynamic viscosity at the bulk temperature, Pa s.
+        Dynamic viscosity eta at the bulk temperature, Pa s.
     pressure_coefficient : Numbers
-        Pressure coefficient of the viscosity, 1/Pa.
+        Pressure coefficient alpha of the viscosity, 1/Pa.
     reduced_modulus : float
         E_r = 2 E*, Pa.
 
@@ -143,10 +144,11 @@ def local_film(
     sliding_factor: Numbers,
     reduced_modulus: float,
 ) -> Array:
-    """Compute h (m) = 1600 rho G^0.6 U^0.7 W^-0.13 S_GF^0.22 with rho in mm and h in um.
+    """Compute the local film h of the micropitting rating (ISO/TS 6336-22).
 
-    G = alpha E_r, U = eta v_S/(2 E_r rho), W = 2 pi p^2/E_r^2, E_r = 2 E*. All but the modulus are numbers or
-    arrays of one shape.
+    h = 1600 rho G^0.6 U^0.7 W^-0.13 S_GF^0.22 with rho in mm and h in um, G = alpha E_r, U = eta v_S/(2
+    E_r rho), W = 2 pi p^2/E_r^2, E_r = 2 E*. All but the modulus are numbers or arrays of one shape. Its
+    ratio to the mean Ra is the specific film lambda_GF.
 
     Parameters
     ----------
@@ -250,14 +252,14 @@ def allowed_integral_temperature(
 
 
 def integral_temperature(bulk: Numbers, mean_flash: Numbers) -> Array:
-    """Compute theta_M + 1.5 times the mean flash along the path.
+    """Compute the integral temperature (ISO/TS 6336-21): theta_M + MEAN_WEIGHT (1.5) times the mean flash.
 
     Parameters
     ----------
     bulk : Numbers
         Bulk temperature theta_M, degrees C.
     mean_flash : Numbers
-        Mean flash temperature along the path, K.
+        Mean flash temperature along the path of contact, K.
 
     Returns
     -------
@@ -268,21 +270,22 @@ def integral_temperature(bulk: Numbers, mean_flash: Numbers) -> Array:
 
 
 def temperature_safety(limit: float, oil: float, numbers: Numbers) -> Array:
-    """Compute the safety (limit - oil) / (temperature - oil).
+    """Compute the safety against scuffing, (limit - oil) / (temperature - oil), above 1 if the limit is
+    met.
 
     Parameters
     ----------
     limit : float
         Allowed temperature, degrees C.
     oil : float
-        Temperature of the oil, degrees C.
+        Temperature of the oil as supplied, degrees C.
     numbers : Numbers
-        Temperatures of any shape, degrees C.
+        Contact or integral temperatures of any shape, degrees C.
 
     Returns
     -------
     (...) array
-        Safety, a ratio; infinite where nothing is heated.
+        Safety, a ratio; infinite where a temperature is not above the oil's, nan if the limit is.
     """
     rise = np.asarray(numbers, float) - oil
     return np.where(rise > 0, (limit - oil) / np.where(rise > 0, rise, 1.0), np.inf)

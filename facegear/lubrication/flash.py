@@ -37,7 +37,9 @@ def flash(
     """Compute the largest temperature rise of the contact and the first flank's share of the heat (Blok
     1937).
 
-    `C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b))`; all are numbers or arrays of one shape.
+    `C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b))` with C = HERTZ, for flanks that are fast (Peclet
+    number above some 5). The share is B1 sqrt u1 / (B1 sqrt u1 + B2 sqrt u2). All are numbers or arrays
+    of one shape.
 
     Parameters
     ----------
@@ -46,9 +48,9 @@ def flash(
     line_load : Numbers
         Load over length w, N/m.
     sliding : Numbers
-        Sliding velocity v_s, m/s.
+        Magnitude of the sliding velocity |v_s|, m/s; it is not made positive here.
     speeds : tuple[Numbers, Numbers]
-        Rolling velocities u1 and u2 of both flanks across the line, m/s.
+        Rolling velocities u1 and u2 of both flanks across the line, m/s; their sign does not count.
     half_width : Numbers
         Half width b of the contact, m.
     coefficients : tuple[Numbers, Numbers]
@@ -76,9 +78,11 @@ def flash_at_any_speed(
     half_width: Numbers,
     flanks: tuple[FlankMaterial, FlankMaterial],
 ) -> tuple[Array, Array]:
-    """Compute the flash temperature of flanks that may be slow, by Jaeger's integral.
+    """Compute the flash temperature of flanks that may be slow.
 
-    The heat is spread as Hertz's pressure. Arguments are those of `flash` but for the last.
+    It is `flash` with each B divided by `slow_factor` at the flank's Peclet number, which comes from
+    Jaeger's integral for heat spread as Hertz's pressure. All arguments but the last are those of
+    `flash`.
 
     Parameters
     ----------
@@ -87,7 +91,7 @@ def flash_at_any_speed(
     line_load : Numbers
         Load over length w, N/m.
     sliding : Numbers
-        Sliding velocity v_s, m/s.
+        Magnitude of the sliding velocity |v_s|, m/s.
     speeds : tuple[Numbers, Numbers]
         Rolling velocities u1 and u2 of both flanks across the line, m/s.
     half_width : Numbers
@@ -128,17 +132,20 @@ def peclet(speed: Numbers, half_width: Numbers, flank: FlankMaterial) -> Array:
 
 
 def slow_factor(number: Numbers) -> Array:
-    """Ratio of the temperature rise of a half space to the limit for high Peclet numbers.
+    """Compute by which factor (below 1) a slow half space heats up less than the limit for high Peclet
+    numbers.
+
+    It is `moving_heat` over HERTZ pi/(4 sqrt(Pe)), by a spline through 49 Peclet numbers in logarithms.
 
     Parameters
     ----------
     number : Numbers
-        Peclet number, dimensionless.
+        Peclet number, dimensionless; below SLOWEST (0.001) the factor at SLOWEST is returned.
 
     Returns
     -------
     (...) array
-        Ratio, 1 beyond a Peclet number of 1000.
+        Ratio, exactly 1 from a Peclet number of FASTEST (1000) on.
     """
     number = np.asarray(number, float)
     log_number = np.log(np.clip(number, SLOWEST, FASTEST))
@@ -147,7 +154,9 @@ def slow_factor(number: Numbers) -> Array:
 
 @cache
 def _slow_spline() -> CubicSpline:
-    """Logarithm of the factor over that of the Peclet number."""
+    """Build the spline of ln(slow_factor) over ln(Peclet number) between SLOWEST and FASTEST, once per
+    process.
+    """
     numbers = np.geomspace(SLOWEST, FASTEST, 49)
     # of q0 b/k: w v mu = pi/2 q0 b, B sqrt(u) sqrt(2b) = 2 k sqrt(Pe)
     high = HERTZ * np.pi / (4 * np.sqrt(numbers))
@@ -155,7 +164,10 @@ def _slow_spline() -> CubicSpline:
 
 
 def moving_heat(number: float) -> float:
-    """Compute the largest temperature under a moving strip of heat spread as Hertz's pressure (Jaeger 1942).
+    """Compute the largest temperature under a moving strip of heat spread as Hertz's pressure (Jaeger
+    1942).
+
+    It is the maximum of `moving_temperature` over the width of the strip.
 
     Parameters
     ----------
@@ -165,7 +177,7 @@ def moving_heat(number: float) -> float:
     Returns
     -------
     float
-        Temperature over q0 b/k with the largest flux q0, dimensionless.
+        Temperature rise over q0 b/k, dimensionless: q0 largest heat flux, b half width, k conductivity.
     """
     optimum = minimize_scalar(
         lambda at: -moving_temperature(at, number), bounds=(-1.0, 1.0), method="bounded"
@@ -176,19 +188,20 @@ def moving_heat(number: float) -> float:
 def moving_temperature(at: float, number: float) -> float:
     """Compute the temperature at a point under a moving strip of heat spread as Hertz's pressure.
 
-    1/pi times the integral over the strip of `sqrt(1 - s^2) e^(Pe (at - s)) K0(Pe |at - s|)`.
+    1/pi times the integral over the strip, s = -1..1, of `sqrt(1 - s^2) e^(Pe (at - s)) K0(Pe |at - s|)`.
 
     Parameters
     ----------
     at : float
-        Position over b, dimensionless: against the motion of the material below 0, with it above.
+        Position over the half width b, -1..1, dimensionless; positive in the direction in which the
+        material moves.
     number : float
-        Peclet number u b/(2 kappa), dimensionless.
+        Peclet number Pe = u b/(2 kappa), dimensionless.
 
     Returns
     -------
     float
-        Temperature over q0 b/k with the largest flux q0, dimensionless.
+        Temperature rise over q0 b/k, dimensionless: q0 largest heat flux, b half width, k conductivity.
     """
     half, weights = _gauss()
     total = 0.0
@@ -206,6 +219,6 @@ def moving_temperature(at: float, number: float) -> float:
 
 @cache
 def _gauss() -> tuple[Array, Array]:
-    """Return nodes and weights of Gauss's rule on 0..1."""
+    """Return the POINTS nodes and weights of Gauss-Legendre quadrature on 0..1, both (POINTS,)."""
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     return 0.5 * (nodes + 1), 0.5 * weights

@@ -51,24 +51,25 @@ class FrictionModel(Protocol):
 
     @property
     def by_film(self) -> bool:
-        """Whether the coefficient depends on the film ratio."""
+        """Whether the coefficient depends on the film ratio, so that the film must be computed first."""
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient.
+        """Compute the friction coefficient at every point.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; viscosity and film ratio may have further axes in front, one bulk
+            temperature each.
 
         Returns
         -------
         (m,) array
-            Coefficient mu, dimensionless.
+            Coefficient mu, dimensionless, with these axes in front if the model depends on them.
         """
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Find the points within each limit of the model.
+        """Tell at which points the conditions are within each limit of the tests behind the model.
 
         Parameters
         ----------
@@ -78,7 +79,8 @@ class FrictionModel(Protocol):
         Returns
         -------
         mapping of (m,) arrays of bool
-            True within the limit, by the limit in words.
+            True within the limit, keyed by the limit in words as in LIMIT_SOURCES; empty without known
+            limits.
         """
 
 
@@ -130,7 +132,10 @@ class GearTested:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient by the formula of the model.
+        """Compute the friction coefficient at each point by the model's formula in FORMULAS.
+
+        The formula was measured as a mean over the mesh; here it takes the load, speed and radius of each
+        point, the viscosity of the oil as supplied, and `lubricant_factor`.
 
         Parameters
         ----------
@@ -148,7 +153,8 @@ class GearTested:
         )
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Find the points within line load and speed of the gear tests.
+        """Tell at which points line load (at least 150 N/mm) and pitch velocity (at most 50 m/s) are as
+        in the tests.
 
         Parameters
         ----------
@@ -158,7 +164,7 @@ class GearTested:
         Returns
         -------
         mapping of (m,) arrays of bool
-            True within the limit, by the limit in words.
+            True within the limit, keyed by the limits in words, LINE_LOAD and PITCH_SPEED.
         """
         return {
             LINE_LOAD: at.line_load >= MIN_LINE_LOAD,
@@ -187,7 +193,7 @@ class Iso633620(GearTested):
     name = "iso_6336_20"
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Find the points within the speed of the gear tests.
+        """Tell whether the pitch line velocity is at most 50 m/s, as in the gear tests.
 
         Parameters
         ----------
@@ -197,7 +203,7 @@ class Iso633620(GearTested):
         Returns
         -------
         mapping of (m,) arrays of bool
-            True within the limit, by the limit in words.
+            True within the limit, keyed by the limit in words, PITCH_SPEED.
         """
         return {PITCH_SPEED: _within_test_speed(at)}
 
@@ -210,22 +216,24 @@ class BenedictKelley:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient by `benedict_kelley`.
+        """Compute the friction coefficient by `friction_formulas.benedict_kelley`, viscosity at the bulk
+        temperature.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; line load, u1 + u2, sliding, bulk viscosity and Ra count.
 
         Returns
         -------
         (m,) array
-            Coefficient mu, dimensionless.
+            Coefficient mu, dimensionless, not below 0.
         """
         return benedict_kelley(at.line_load, at.sum_velocity, at.sliding, at.bulk_viscosity, at.ra)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Find the points where the logarithm is not cut.
+        """Tell at which points sliding exceeds SMALLEST_SLIDE times u1 + u2, so that the logarithm is not
+        cut off.
 
         Parameters
         ----------
@@ -235,7 +243,7 @@ class BenedictKelley:
         Returns
         -------
         mapping of (m,) arrays of bool
-            True within the limit, by the limit in words.
+            True within the limit, keyed by the limit in words, SLIDING.
         """
         return {SLIDING: at.sliding > SMALLEST_SLIDE * at.sum_velocity}
 
@@ -248,12 +256,12 @@ class Xu:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient by `xu`.
+        """Compute the friction coefficient by `friction_formulas.xu`, viscosity at the bulk temperature.
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points; pressure, radius, u1, u2, bulk viscosity and composite Rq count.
 
         Returns
         -------
@@ -263,7 +271,7 @@ class Xu:
         return xu(at.pressure, at.radius, at.u1, at.u2, at.bulk_viscosity, at.rq)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Find the points within the slide to roll ratio of the tests.
+        """Tell at which points the slide to roll ratio |u1 - u2| / ((u1 + u2)/2) is at most 1.
 
         Parameters
         ----------
@@ -273,7 +281,7 @@ class Xu:
         Returns
         -------
         mapping of (m,) arrays of bool
-            True within the limit, by the limit in words.
+            True within the limit, keyed by the limit in words, SLIDE_TO_ROLL.
         """
         return {SLIDE_TO_ROLL: 2 * np.abs(at.u1 - at.u2) <= np.abs(at.sum_velocity)}
 
@@ -299,12 +307,12 @@ class Doleschel:
     by_film: ClassVar = True
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Compute the friction coefficient.
+        """Compute the coefficient xi mu_F + (1 - xi) mu_EHD of solid and fluid friction (see the class).
 
         Parameters
         ----------
         at : Rubbing
-            Conditions at m points.
+            Conditions at m points, with their film ratio.
 
         Returns
         -------

@@ -95,14 +95,15 @@ def iso_6336_22(
     ra: float,
     factor: float = 1.0,
 ) -> Array:
-    """Compute 0.045 (w K/(v_S rho))^0.2 eta^-0.05 X_R X_L, X_R = 2.2 (Ra/rho)^0.25.
+    """Compute 0.045 (w K/(v_S rho))^0.2 eta^-0.05 X_R X_L, X_R = 2.2 (Ra/rho)^0.25 with Ra in um and rho
+    in mm.
 
     All but roughness and factor are numbers or arrays of one shape.
 
     Parameters
     ----------
     line_load : Numbers
-        Load over length w, with K in it, N/m.
+        Load over length times the load factors K, w K, N/m.
     sum_velocity : Numbers
         v_S = u1 + u2, m/s.
     radius : Numbers
@@ -236,19 +237,21 @@ def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: 
 
 
 def _load_term(line_load: Numbers, sum_velocity: Numbers, radius: Numbers) -> Array:
-    """Return (w/(v_S rho))^0.2 in N/mm, m/s and mm."""
+    """Return (w/(v_S rho))^0.2 with w in N/mm, v_S in m/s and rho in mm, from arguments in N/m, m/s and
+    m.
+    """
     return (
         1e-6 * np.asarray(line_load, float) / (np.asarray(sum_velocity, float) * np.asarray(radius, float))
     ) ** 0.2
 
 
 def _viscosity_term(viscosity: Numbers) -> Array:
-    """Return eta^-0.05 in mPa s."""
+    """Return eta^-0.05 with eta in mPa s, from an argument in Pa s."""
     return (1e3 * np.asarray(viscosity, float)) ** -0.05
 
 
 def _within_test_speed(at: Rubbing) -> Mask:
-    """Whether the pitch line speed is within the tests of the formula, at each point."""
+    """Return (m,) booleans, all equal: whether the pitch line velocity is at most LARGEST_SPEED (50 m/s)."""
     return np.full(at.line_load.shape, at.pitch_speed <= LARGEST_SPEED)
 
 

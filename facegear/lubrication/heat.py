@@ -66,14 +66,15 @@ class Running(Local):
 
     @property
     def mean_bulk(self) -> float:
-        """Bulk temperature (C) that the film and the contact see: the mean of both flanks."""
+        """Mean of both flanks' bulk temperatures, C, at which film and contact are evaluated."""
         return 0.5 * sum(self.bulk)
 
 
 def running(contact: LoadedContact, speed: float, lubrication: Lubrication) -> Running:
-    """Compute the state of the flanks of one mesh with bodies of its own.
+    """Compute friction, heat and film of one mesh alone at one torque, with its bulk temperatures.
 
-    Where bulk temperatures follow from the loss both are iterated.
+    A given bulk temperature is taken as it is. Otherwise loss and bulk temperature are iterated (plain
+    fixed-point steps from the oil's temperature): the bodies take up the heat of this mesh only.
 
     Parameters
     ----------
@@ -82,19 +83,19 @@ def running(contact: LoadedContact, speed: float, lubrication: Lubrication) -> R
     speed : float
         Pinion speed, rad/s.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Oil, roughness, friction model and the rule of the bulk temperature (`lubrication.bulk`).
 
     Returns
     -------
     Running
-        The state.
+        State at the m points and h hats, with bulk temperatures (C), loss and heat (W).
 
     Raises
     ------
     TooHot
         If a body passes the oil's flash point.
     NotConverged
-        If loss and bulk temperature do not settle.
+        If loss and bulk temperature do not settle within STEPS steps.
     """
     bulk = starting_bulk(lubrication)
     for _ in range(STEPS):
@@ -109,17 +110,17 @@ def running(contact: LoadedContact, speed: float, lubrication: Lubrication) -> R
 
 
 def starting_bulk(lubrication: Lubrication) -> tuple[float, float]:
-    """Return the bulk temperatures to start from: those given, or the oil's.
+    """Return the bulk temperatures to start an iteration from: the given one, else the oil's as supplied.
 
     Parameters
     ----------
     lubrication : Lubrication
-        How the flanks are lubricated.
+        `bulk` is used if it is a GivenBulk, else `oil_temperature`.
 
     Returns
     -------
     tuple[float, float]
-        Temperatures of pinion and gear, C.
+        Temperatures of pinion and gear, C, which are equal.
     """
     if isinstance(lubrication.bulk, GivenBulk):
         return lubrication.bulk.temperature, lubrication.bulk.temperature
@@ -168,21 +169,22 @@ def require_cool(bulk: tuple[float, float], lubrication: Lubrication, torque: fl
 
 
 def mean_flash(contact_places: ContactPoints, rise: Array) -> float:
-    """Mean along the path of contact of the largest flash temperature at each place of it, away from edges.
+    """Average the flash temperature along the path of contact, for ISO's integral and bulk temperatures.
 
-    The path runs through all positions of all pairs.
+    A stage of the path is one position of one tooth pair. At each stage the largest flash of the contact
+    line counts, and points near edges are left out. All stages weigh the same.
 
     Parameters
     ----------
     contact_places : ContactPoints
-        Contact points of one torque.
+        Contact points (m,) of one torque.
     rise : (m,) array
         Flash temperature at each point, K.
 
     Returns
     -------
     float
-        Mean flash temperature, K; 0 without any point.
+        Mean flash temperature, K; 0 without any point away from edges.
     """
     stage = passage(contact_places.position, contact_places.tooth)[contact_places.inside]
     if stage.size == 0:
@@ -194,16 +196,16 @@ def mean_flash(contact_places: ContactPoints, rise: Array) -> float:
 
 
 def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) -> tuple[float, float]:
-    """Compute the bulk temperatures of bodies that take up heat.
+    """Compute the bulk temperatures of bodies that take up heat: the oil's plus heat / cooling.
 
     Parameters
     ----------
     heat : tuple[float, float]
         Heat that goes to pinion and gear, W.
     cooling : Cooling
-        Heat that they give off, W/K.
+        Heat that pinion and face gear give off to the oil per degree above it, W/K.
     oil_temperature : float
-        Temperature of the oil, C.
+        Temperature of the oil as supplied, C.
 
     Returns
     -------
@@ -219,7 +221,12 @@ def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) 
 def _bulk_after(
     state: "Running", contact_places: ContactPoints, lubrication: Lubrication
 ) -> tuple[float, float]:
-    """Return the bulk temperatures of pinion and gear, C, that a state's heat gives."""
+    """Return the bulk temperatures of pinion and gear, C, that follow from a state, by the rule
+    `lubrication.bulk`.
+
+    With Cooling from the heat of each body, with BorrowedBulk from the mean flash; with GivenBulk
+    unchanged.
+    """
     if isinstance(lubrication.bulk, Cooling):
         return warmed(state.heat, lubrication.bulk, lubrication.oil_temperature)
     if isinstance(lubrication.bulk, BorrowedBulk):
@@ -231,7 +238,10 @@ def _bulk_after(
 def running_at(
     contact: LoadedContact, speed: float, lubrication: Lubrication, bulk: tuple[float, float]
 ) -> Running:
-    """Compute the state of the flanks at given bulk temperatures.
+    """Compute friction, heat and film of one mesh at one torque and at given bulk temperatures.
+
+    Loss is the mean over the pitch of friction times normal force times sliding velocity, summed over the
+    hats.
 
     Parameters
     ----------
@@ -240,14 +250,14 @@ def running_at(
     speed : float
         Pinion speed, rad/s.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Oil, roughness and friction model; `lubrication.bulk` is not used.
     bulk : tuple[float, float]
         Bulk temperatures of pinion and gear, C.
 
     Returns
     -------
     Running
-        The state.
+        State at the m points and h hats, with loss (W) and the heat (W) to pinion and gear.
     """
     hats = contact.hats
     local = local_state(contact.points, speed, lubrication, 0.5 * sum(bulk))
@@ -265,7 +275,11 @@ def running_at(
 
 
 def local_state(spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array) -> Local:
-    """Compute friction, heat and film at contact points.
+    """Compute friction coefficient, flash temperature and film thickness at contact points.
+
+    The line film is Dowson and Higginson's with shear heating, the short film Hamrock and Dowson's with
+    the same factor, and the micropitting film that of ISO/TS 6336-22. Everything is evaluated at the bulk
+    temperature, but the sliding factor of the micropitting film at bulk plus flash.
 
     Parameters
     ----------
@@ -274,14 +288,14 @@ def local_state(spots: ContactPoints, speed: float, lubrication: Lubrication, wa
     speed : float
         Pinion speed, rad/s.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Oil, roughness, friction model and flank materials.
     warm : float or Array
-        Mean bulk temperature, C, a number or an array (..., 1) or (..., m).
+        Mean bulk temperature of both flanks, C, a number or an array (..., 1) or (..., m).
 
     Returns
     -------
     Local
-        Local state (m,) or (..., m).
+        Local state, each field (m,) or (..., m).
     """
     oil = lubrication.oil
     viscosity, coefficient = oil.viscosity(warm), oil.pressure_coefficient_at(warm)
@@ -324,7 +338,9 @@ def local_state(spots: ContactPoints, speed: float, lubrication: Lubrication, wa
 def friction_and_heat_fraction(
     spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array
 ) -> tuple[Array, Array]:
-    """Compute friction coefficient and the pinion's part of the heat alone, as `local_state` does.
+    """Compute only the friction coefficient and the pinion's fraction of the heat, as `local_state` does.
+
+    It saves the films: the line film is computed only if the friction model depends on it.
 
     Parameters
     ----------
@@ -333,14 +349,14 @@ def friction_and_heat_fraction(
     speed : float
         Pinion speed, rad/s.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Oil, roughness, friction model and flank materials.
     warm : float or Array
-        Mean bulk temperature, C, a number or an array (..., 1) or (..., m).
+        Mean bulk temperature of both flanks, C, a number or an array (..., 1) or (..., m).
 
     Returns
     -------
     two (m,) or (..., m) arrays
-        Friction coefficient and fraction of the heat, dimensionless.
+        Friction coefficient and the pinion's fraction of the heat, dimensionless.
     """
     ratio = np.full(spots.radius.shape, np.nan)
     if lubrication.friction.by_film:
@@ -353,7 +369,9 @@ def friction_and_heat_fraction(
 def _line_film(
     spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array
 ) -> tuple[Array, Array]:
-    """Smallest film (m) of the line with shear heating, and the factor that it brings."""
+    """Return the smallest film (m) of the line contact at each point, reduced by inlet shear heating, and
+    the reduction factor, both (m,) or (..., m); `warm` is the mean bulk temperature, C.
+    """
     oil, viscosity = lubrication.oil, lubrication.oil.viscosity(warm)
     u1, u2 = speed * spots.u1, speed * spots.u2
     sheared = shear_heating(
@@ -374,7 +392,12 @@ def _line_film(
 def _rubbing(
     spots: ContactPoints, speed: float, lubrication: Lubrication, viscosity: Array, film_ratio: Array
 ) -> Rubbing:
-    """Return loads, radii, speeds and oil data of contact points for the friction formulas."""
+    """Return loads, radii, speeds and oil data of contact points for the friction formulas.
+
+    `speed` is the pinion's, rad/s; `viscosity` (Pa s) is at the bulk temperature; `film_ratio` is the
+    film over the composite Rq. The line load is `scaled_load`, in which a line carries the whole force of
+    its hats.
+    """
     return Rubbing(
         line_load=spots.scaled_load,
         radius=spots.radius,
@@ -394,7 +417,9 @@ def _rubbing(
 def _flash_temperature(
     spots: ContactPoints, rubbing: Rubbing, friction: Array, lubrication: Lubrication
 ) -> tuple[Array, Array]:
-    """Flash temperature (K) and the pinion's part of the heat."""
+    """Return the flash temperature (K) at each point and the pinion's fraction of the heat, both (...,
+    m).
+    """
     return flash_at_any_speed(
         friction,
         spots.line_load,
@@ -406,5 +431,7 @@ def _flash_temperature(
 
 
 def _products(oil: Oil, temperature: Array) -> tuple[Array, Array]:
-    """Return viscosity, Pa s, and pressure coefficient, 1/Pa, of an oil at temperatures, C."""
+    """Return the two factors of an oil's alpha eta at temperatures (C): viscosity, Pa s, and pressure
+    coefficient, 1/Pa, in the shape of the temperatures.
+    """
     return oil.viscosity(temperature), oil.pressure_coefficient_at(temperature)

@@ -44,25 +44,26 @@ class Spin:
         return self.speed * np.cross(self.axis, points - self.through)
 
     def torque(self, points: Array, forces: Array) -> float:
-        """Compute the moment of forces about the axis.
+        """Compute the total moment of forces about the axis, positive in the sense of rotation about
+        `axis`.
 
         Parameters
         ----------
         points : (n, 3) array
-            Points, m.
+            Points where the forces act, m.
         forces : (n, 3) array
             Forces at the points, N.
 
         Returns
         -------
         float
-            Moment, N m.
+            Sum of the moments, N m.
         """
         return float((np.cross(points - self.through, forces) @ self.axis).sum())
 
 
 def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Array, Array]:
-    """Compute the velocity of the first body relative to the second.
+    """Compute the velocity of the first body relative to the second, split into sliding and normal parts.
 
     Parameters
     ----------
@@ -71,14 +72,15 @@ def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Arra
     second : Spin
         Rotation of the second body.
     points : (..., 3) array
-        Points, m.
+        Contact points, m.
     normals : (..., 3) array
         Common unit normals at the points, dimensionless.
 
     Returns
     -------
     (..., 3) array and (...) array
-        Part in the tangent plane, and part along the normal, which belongs to teeth that open or close; m/s.
+        Sliding velocity in the tangent plane, m/s, and velocity along the normal, m/s, which is not 0
+        only where the teeth open or close.
     """
     relative = first.velocity(points) - second.velocity(points)
     along = np.einsum("...i,...i->...", relative, normals)
@@ -86,7 +88,10 @@ def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Arra
 
 
 def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
-    """Return the rotations of pinion and face gear, the gear at the exact ratio, with assembly errors.
+    """Return the rotations of pinion and face gear about their axes in the mesh frame.
+
+    The gear turns at the exact tooth ratio. The pinion's axis stands with its assembly errors; the gear's
+    is the z axis through the origin.
 
     Parameters
     ----------
@@ -98,7 +103,7 @@ def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
     Returns
     -------
     tuple[Spin, Spin]
-        Both rotations in the mesh frame.
+        Rotations of pinion and face gear.
     """
     stands = pinion_pose(design, 0.5 * 2 * pi / design.pinion.teeth, 0)
     ratio = design.pinion.teeth / design.face_gear.teeth
@@ -109,7 +114,7 @@ def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
 
 
 def pinion_pose(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidMotion:
-    """Return the motion from the pinion's body frame to the mesh frame.
+    """Return the rigid motion from the pinion's body frame to the mesh frame, for one of its teeth.
 
     Parameters
     ----------
@@ -118,34 +123,36 @@ def pinion_pose(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidM
     phi1 : ArrayLike
         Pinion angle, rad.
     tooth : ArrayLike
-        Number of the tooth pair; tooth 0 of the body frame takes its place.
+        Number of the tooth pair, broadcast with `phi1`: the pinion is turned on by so many pitches, so that
+        tooth 0 of the body frame stands where this pair's tooth is.
 
     Returns
     -------
     RigidMotion
-        Motions in m.
+        Rotation matrices and shifts in m, in the shape of angles and teeth.
     """
     rotation = np.asarray(phi1, float) + np.asarray(tooth, float) * 2 * pi / design.pinion.teeth
     return pinion_to_gear(design, rotation, np.zeros_like(rotation), np.zeros_like(rotation))
 
 
 def surface_normals(design: PairDesign, points: Array) -> Array:
-    """Compute the outward normals on the pinion's right flank or fillet.
+    """Compute the outward unit normals at points of the pinion's right flank or its fillet.
 
-    A point of the involute lies on a tangent of the base circle, and so it does where a relief moved it along
-    that tangent; the normal is the tangent.
+    A point of the involute lies on a tangent of the base circle, and so it does where a relief moved it
+    along that tangent; the normal is the tangent. Below the end of the involute it is the normal of the
+    trochoid at the same radius, interpolated between FILLET_SAMPLES points.
 
     Parameters
     ----------
     design : PairDesign
         Geometry of the pair.
     points : (n, 3) array
-        Points in the body frame, m.
+        Points in the pinion's body frame, y along its axis, m.
 
     Returns
     -------
     (n, 3) array
-        Unit normals in the body frame, dimensionless.
+        Unit normals in the body frame, without a y component, dimensionless.
     """
     x, z = points[..., 0], points[..., 2]
     radius, angle = np.hypot(x, z), np.arctan2(x, -z)
@@ -181,26 +188,27 @@ class LineKinematics:
 
 
 def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, tooth: Array) -> LineKinematics:
-    """Compute the velocities along contact lines.
+    """Compute sliding and rolling velocities at the points of contact lines.
 
-    On the pinion's flank t points across the profile towards its axis and e along that axis; the line is l =
-    cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e.
+    On the pinion's flank t points across the profile towards its axis and e along that axis. The line is
+    l = cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e. Sliding is that
+    of the pinion over the gear.
 
     Parameters
     ----------
     design : PairDesign
         Geometry of the pair.
     lines : ContactLines
-        Contact lines (p, n).
+        Contact lines (p, n): p placements of tooth pairs, n planes across the pinion's axis.
     position : (p,) array
         Position of each line, in pitches.
     tooth : (p,) array
-        Tooth pair of each line, index.
+        Number of the tooth pair of each line.
 
     Returns
     -------
     LineKinematics
-        Velocities (p, n) for a pinion at 1 rad/s, m.
+        Velocities (p, n) for a pinion at 1 rad/s, in m (m/s per rad/s); nan where the line's slope is.
     """
     surface = flank_points(design, lines.roll, lines.y)
     stands = pinion_pose(design, pinion_angle(design, position), tooth)

@@ -35,26 +35,27 @@ class HatSlip:
 
     @property
     def sliding(self) -> Array:
-        """Magnitude of the sliding velocity at 1 rad/s, (m,), m."""
+        """Magnitude (m,) of the sliding velocity of each hat at 1 rad/s of the pinion, m."""
         return np.linalg.norm(self.velocity, axis=-1)
 
 
 def hat_slip(design: PairDesign, arrays: Arrays) -> HatSlip:
-    """Return the sliding velocities at the nodes that carry force.
+    """Collect the forces of stored contacts at their nodes, with the sliding velocities there.
 
-    The forces carry the whole torque; the smoothed line loads carry 1 to 2 % less.
+    Each loaded node of the pinion's lattice is a hat (basis function of the contact force). Its force
+    carries the whole torque with the others; the smoothed line loads carry 1 to 2 % less.
 
     Parameters
     ----------
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`; one entry a loaded node, torque and position.
 
     Returns
     -------
     HatSlip
-        Forces and velocities (m,).
+        Forces (N) and velocities at 1 rad/s of the pinion (m), in the mesh frame, of m hats.
     """
     node, tooth, position = arrays["node"], arrays["tooth"], arrays["position"]
     nodes = arrays["point_m"]
@@ -88,22 +89,25 @@ class LossFactors:
 
     @property
     def mean(self) -> Array:
-        """Mean over the positions of a pitch, which are spread evenly, (t,)."""
+        """Loss factor of each torque (t,), the mean over the evenly spaced positions of a pitch."""
         return self.at.mean(axis=1)
 
 
 def loss_factors(hats: HatSlip) -> LossFactors:
-    """Compute the loss factors: the sum of `f |v| / (T w)` of every contact.
+    """Compute the loss factor H_V = sum of f |v| / (T w) over the hats at each torque and position.
+
+    The loss of the mesh is then mu H_V T w at a constant friction coefficient mu, with the pinion's
+    torque T and speed w.
 
     Parameters
     ----------
     hats : HatSlip
-        Forces and velocities of the contact.
+        Normal forces f (N) and sliding velocities v at w = 1 rad/s (m).
 
     Returns
     -------
     LossFactors
-        Loss factors (t, p) by torque and position.
+        Loss factors (t, p), torques and positions rising.
     """
     torques, row = np.unique(hats.torque, return_inverse=True)
     positions, column = np.unique(hats.position, return_inverse=True)
@@ -124,12 +128,14 @@ class OverTorque:
     values: Array
 
     def at(self, torque: Numbers) -> Array:
-        """Interpolate the quantity, which is known at some torques, at other torques.
+        """Interpolate the quantity at other torques: monotone cubics (PCHIP) in the logarithm of the
+        torque.
 
         Parameters
         ----------
         torque : Numbers
-            Torques of any shape, N m; a torque of 0 counts as the smallest.
+            Torques of any shape, N m. Their magnitude counts; outside the known torques, and so at 0, the
+            value at the nearest one is kept.
 
         Returns
         -------
@@ -159,11 +165,10 @@ class OverTorque:
 
 
 def monotone_at(nodes: Array, values: Array, at: Array) -> Array:
-    """Interpolate tables, each at a point of its own (Fritsch and Butland 1984), as SciPy's
-    PchipInterpolator.
+    """Interpolate n tables, each at one point, by monotone cubics (Fritsch and Butland 1984).
 
-    SciPy's set-up for every call takes longer than all else that a sample of tolerances needs for its
-    friction.
+    It gives the numbers of SciPy's PchipInterpolator, whose set-up for every call takes longer than all
+    else that a sample of tolerances needs for its friction.
 
     Parameters
     ----------
@@ -193,7 +198,12 @@ def monotone_at(nodes: Array, values: Array, at: Array) -> Array:
 
 
 def _slopes(steps: Array, rises: Array) -> Array:
-    """Return the slopes (..., t) of the monotone interpolant at its nodes."""
+    """Return the slopes (..., t) of the monotone interpolant at its t nodes.
+
+    `steps` (t - 1,) are the distances of the nodes, `rises` (..., t - 1) the slopes of the chords.
+    Inside, the slope is the weighted harmonic mean of both chords, 0 where they differ in sign; with two
+    nodes it is the chord's.
+    """
     slopes = np.zeros((*rises.shape[:-1], steps.size + 1))
     if steps.size == 1:
         slopes[...] = rises
@@ -210,7 +220,12 @@ def _slopes(steps: Array, rises: Array) -> Array:
 
 
 def _end(step: float, beside: float, rise: Array, rise_beside: Array) -> Array:
-    """Slope at an end: of three points, within what keeps the curve monotone there."""
+    """Return the slope at an end node from a parabola through three points, limited so that the curve is
+    monotone.
+
+    `step` and `rise` are distance and slope of the chord at the end, `beside` and `rise_beside`
+    those of the next chord.
+    """
     slope = ((2 * step + beside) * rise - step * rise_beside) / (step + beside)
     overshoots = (np.sign(rise) != np.sign(rise_beside)) & (np.abs(slope) > 3 * np.abs(rise))
     return np.where(np.sign(slope) != np.sign(rise), 0.0, np.where(overshoots, 3 * rise, slope))

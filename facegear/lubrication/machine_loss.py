@@ -41,19 +41,21 @@ class LossCurves:
     heat_fraction: Array
 
     def at(self, torque: Array, *names: str) -> Array:
-        """Interpolate quantities of each mesh at its torque.
+        """Interpolate fields of each mesh at that mesh's torque, monotone in the logarithm of the torque.
+
+        Outside the solved torques the value at the nearest one is kept.
 
         Parameters
         ----------
         torque : (n,) array
-            Torques, N m.
+            Torque of each mesh on its pinion, positive, N m.
         *names : str
-            Names of fields.
+            Names of fields, such as "loss_fraction".
 
         Returns
         -------
         (names, n) array
-            Values in the units of the fields.
+            One row for each name, in the unit of its field.
         """
         values = np.stack([getattr(self, name) for name in names])
         if self.torques.size == 1:
@@ -85,11 +87,11 @@ class Pair(Protocol):
 
     @property
     def torques(self) -> Array:
-        """Torques at which the contact is solved, N m."""
+        """Pinion torques (t,) N m at which the contact is solved, rising."""
         ...
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
+        """Compute the friction loss of meshes at every solved torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -101,11 +103,11 @@ class Pair(Protocol):
         Returns
         -------
         LossCurves
-            Loss of the meshes (n, t).
+            Lost part of the power, and the pinion's part of its heat, both (n, t).
         """
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes at every torque, at given bulk temperatures.
+        """Compute loss, temperature and film of meshes at every solved torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -117,11 +119,12 @@ class Pair(Protocol):
         Returns
         -------
         MeshCurves
-            Loss, temperature and film of the meshes (n, t).
+            Loss and heat fractions, largest flash (K), smallest film and micropitting ratio, each (n, t).
         """
 
     def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
-        """Compute one mesh with the bulk temperatures that the section gives it at each torque.
+        """Compute one mesh alone, with the bulk temperatures that follow from `lubrication.bulk` at each
+        torque.
 
         Parameters
         ----------
@@ -144,18 +147,19 @@ class LoadedPair:
 
     @property
     def torques(self) -> Array:
-        """Torques of the contacts, N m."""
+        """Pinion torques (t,) N m of the contacts, rising."""
         return np.array([contact.torque for contact in self.contacts])
 
     def states(self, speed: float, bulk: tuple[float, float] | None = None) -> list[Running]:
-        """Compute the state of the flanks at every torque.
+        """Compute friction, heat and film of one mesh at every torque, at all of its contact points.
 
         Parameters
         ----------
         speed : float
             Pinion speed, rad/s.
         bulk : tuple[float, float] or None
-            Bulk temperatures of pinion and gear, C; None: those of a single mesh.
+            Bulk temperatures of pinion and gear, C. If None, they follow at each torque from
+            `lubrication.bulk` with the heat of this mesh alone.
 
         Returns
         -------
@@ -167,7 +171,8 @@ class LoadedPair:
         return [running_at(contact, speed, self.lubrication, bulk) for contact in self.contacts]
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
+        """Compute the friction loss of meshes at every torque; this class returns all curves, as `curves`
+        does.
 
         Parameters
         ----------
@@ -179,12 +184,13 @@ class LoadedPair:
         Returns
         -------
         LossCurves
-            Loss of the meshes (n, t).
+            A MeshCurves, whose lost part of the power and pinion's part of the heat are (n, t).
         """
         return self.curves(speed, bulk)
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes; meshes with the same bulk temperatures share theirs.
+        """Compute loss, temperature and film of meshes; meshes of equal bulk temperatures are computed
+        once.
 
         Parameters
         ----------
@@ -196,14 +202,15 @@ class LoadedPair:
         Returns
         -------
         MeshCurves
-            Loss, temperature and film of the meshes (n, t).
+            Loss and heat fractions, largest flash (K), smallest film and micropitting ratio, each (n, t).
         """
         different, of = np.unique(bulk, axis=0, return_inverse=True)
         rows = [self._row(self.states(speed, (low, high)), speed) for low, high in different.tolist()]
         return MeshCurves(self.torques, *np.stack(rows, axis=1)[:, of.ravel()])
 
     def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
-        """Compute one mesh with the bulk temperatures that the section gives it at each torque.
+        """Compute one mesh alone, with the bulk temperatures that follow from `lubrication.bulk` at each
+        torque.
 
         Parameters
         ----------
@@ -227,7 +234,11 @@ class LoadedPair:
         return curves, np.array([state.bulk for state in states])
 
     def _row(self, states: Sequence[Running], speed: float) -> Array:
-        """Return the fields (5, t) of MeshCurves of one mesh from its states at t torques."""
+        """Return five rows by t torques of one mesh, in the order of MeshCurves' fields after `torques`.
+
+        Rows: loss fraction, the pinion's part of the heat, largest flash (K), smallest film ratio and
+        smallest micropitting ratio, the last three away from edges. `speed` is the pinion's, rad/s.
+        """
         inside = [contact.points.inside for contact in self.contacts]
         rows = [
             (
@@ -279,33 +290,35 @@ class MachineLoss:
 
     @property
     def contact_temperature(self) -> Array:
-        """Largest temperature (n,) C of the contact: the mean bulk temperature and the flash."""
+        """Largest contact temperature (n,) C of each loaded flank: mean bulk temperature plus flash."""
         return self.bulk.mean(axis=1) + self.flash
 
     @property
     def total(self) -> float:
-        """Loss of all meshes, W."""
+        """Friction loss of all loaded flanks, W."""
         return float(self.loss.sum())
 
 
 def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
-    """Compute loss and heat of a machine.
+    """Compute loss, heat, temperature and film of a machine from the torque that each mesh carries.
 
-    With cooling given, a body's bulk temperature follows from the heat of all its meshes.
+    With cooling given, a body's bulk temperature follows from the heat of all its meshes, and loss and
+    temperature are iterated. Otherwise every mesh has the bulk temperatures of a single mesh at its mean
+    torque. Losses use the mean torque; flash and films use the peak torque.
 
     Parameters
     ----------
     pair : Pair
-        Lubricated tooth pair.
+        Lubricated tooth pair, with all contact points (LoadedPair) or few of them (ReducedPair).
     loads : MeshLoads
-        Torques of the loaded flanks.
+        Bodies, mean and peak torques (N m) of the n loaded flanks.
     speed : float
         Speed of the pinions, rad/s.
 
     Returns
     -------
     MachineLoss
-        Loss, heat, temperature and film of every loaded flank.
+        Loss, heat, temperature and film of every loaded flank (n,), and the heat of every body.
 
     Raises
     ------
@@ -325,6 +338,9 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
     cooling = lubrication.bulk
 
     def step(bulk: Array) -> Array:
+        """Return the bulk temperatures (n, 2) C that follow from the machine's heat at bulk temperatures
+        (n, 2) C.
+        """
         heat = _heat(loads, *_losses(loads, pair.losses(speed, bulk), speed))
         return _machine_bulk(loads, heat, cooling, lubrication.oil_temperature)
 
@@ -335,33 +351,34 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
 def settled_bulk(
     step: Callable[[Array], Array], lubrication: Lubrication, torque: Array, speed: float
 ) -> Array:
-    """Find the bulk temperatures that a step from loss to temperature leaves unchanged.
+    """Find the fixed point of a step from bulk temperatures to bulk temperatures, by Anderson mixing.
 
     Parameters
     ----------
     step : callable
-        Function from bulk temperatures (n, 2) C to those that follow from their loss.
+        Function from bulk temperatures (n, 2) C to those (n, 2) C that follow from the loss at them.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Source of the starting temperatures and of the oil's flash point.
     torque : (n,) array
-        Torques, N m.
+        Pinion torque of each row, N m, for the message alone.
     speed : float
-        Pinion speed, rad/s.
+        Pinion speed, rad/s, for the message alone.
 
     Returns
     -------
     (n, 2) array
-        Bulk temperatures of pinion and gear, C.
+        Bulk temperatures of pinion and gear, C, within BULK_TOLERANCE.
 
     Raises
     ------
     TooHot
-        If a body passes the oil's flash point.
+        If a step gives a temperature above the oil's flash point.
     NotConverged
-        If they do not settle.
+        If they do not settle within STEPS steps.
     """
 
     def cool(bulk: Array) -> Array:
+        """Apply `step` and raise TooHot if a temperature passes the oil's flash point."""
         after = step(bulk)
         for row, load in zip(after.tolist(), torque.tolist(), strict=True):
             require_cool((row[0], row[1]), lubrication, load, speed)
@@ -383,14 +400,20 @@ def settled_bulk(
 
 
 def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:
-    """Return the loss (n,) of every loaded flank, and the part of it that heats the pinion, both in W."""
+    """Return the loss (n,) of every loaded flank at its mean torque, and the part that heats the pinion,
+    both in W.
+    """
     loss_fraction, fraction = curves.at(loads.torque, "loss_fraction", "heat_fraction")
     loss = loss_fraction * loads.torque * speed
     return loss, fraction * loss
 
 
 def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
-    """Return the heat (bodies,), W, that every body takes up from its meshes."""
+    """Return the heat (bodies,) W that every body takes up, pinions first.
+
+    `loss` (n,) is the loss of each loaded flank and `warm` (n,) the part of it that heats the pinion,
+    both in W.
+    """
     heat = np.zeros(loads.bodies)
     np.add.at(heat, loads.pinion, warm)
     np.add.at(heat, loads.pinions + loads.gear, loss - warm)
@@ -398,7 +421,10 @@ def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
 
 
 def _machine_loss_of(loads: MeshLoads, curves: MeshCurves, speed: float, bulk: Array) -> MachineLoss:
-    """Return losses, temperatures and film of all meshes at given bulk temperatures, C."""
+    """Evaluate the curves of all loaded flanks: losses at mean torques, flash and films at peak torques.
+
+    `curves` were computed at the pinion speed `speed`, rad/s. `bulk` (n, 2) C is stored in the result.
+    """
     loss, warm = _losses(loads, curves, speed)
     flash, film_ratio, micropitting = curves.at(loads.peak, "flash", "film_ratio", "micropitting")
     torque_range = OverTorque(curves.torques, curves.torques)
@@ -415,6 +441,10 @@ def _machine_loss_of(loads: MeshLoads, curves: MeshCurves, speed: float, bulk: A
 
 
 def _machine_bulk(loads: MeshLoads, heat: Array, cooling: Cooling, oil_temperature: float) -> Array:
-    """Bulk temperatures (n, 2) C of the bodies of every loaded flank."""
+    """Return the bulk temperatures (n, 2) C of pinion and gear of every loaded flank: oil's plus heat /
+    cooling.
+
+    `heat` (bodies,) W is what each body takes up from all its meshes, pinions first.
+    """
     rises = heat[loads.pinion] / cooling.pinion, heat[loads.pinions + loads.gear] / cooling.face_gear
     return oil_temperature + np.stack(rises, axis=1)

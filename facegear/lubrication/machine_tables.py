@@ -32,17 +32,17 @@ class MachineState:
 
     @property
     def power(self) -> np.ndarray:
-        """Power that every mesh carries, W."""
+        """Power (n,) W that every loaded flank carries: mean pinion torque times pinion speed."""
         return self.loads.torque * self.speed_rpm * pi / 30
 
 
 def mesh_loss_table(states: Sequence[MachineState], lubrication: Lubrication, limits: Limits) -> pd.DataFrame:
-    """Tabulate loss, heat, temperature and film of every loaded flank.
+    """Tabulate loss, heat, temperature, film and safeties of every loaded flank.
 
     Parameters
     ----------
     states : Sequence[MachineState]
-        States of the machine.
+        States of the machine: bin 0 is the nominal load, others are bins of the duty cycle.
     lubrication : Lubrication
         How the flanks are lubricated.
     limits : Limits
@@ -51,7 +51,8 @@ def mesh_loss_table(states: Sequence[MachineState], lubrication: Lubrication, li
     Returns
     -------
     pd.DataFrame
-        One row for each state and loaded flank, columns MESH_COLUMNS.
+        One row for each state and loaded flank, columns MESH_COLUMNS, units in the names.
+        `loss_in_motion_w` is nan here; the friction stage fills it in.
     """
     allowed_contact = limits.allowed_contact(lubrication.oil, lubrication.oil_temperature)
     frames = []
@@ -96,13 +97,13 @@ def body_heat_table(states: Sequence[MachineState], lubrication: Lubrication) ->
     states : Sequence[MachineState]
         States of the machine.
     lubrication : Lubrication
-        How the flanks are lubricated.
+        Source of the rule of the bulk temperature.
 
     Returns
     -------
     pd.DataFrame
-        One row for each state and body, columns BODY_COLUMNS; nan where the bulk temperature is a rule's and
-        differs from mesh to mesh.
+        One row for each state and body, columns BODY_COLUMNS; `bulk_c` is nan with a borrowed rule, where
+        it differs from mesh to mesh of a body.
     """
     rows = [
         (state.bin, state.speed_rpm, name, heat, _bulk(lubrication, heat, body < state.loads.pinions))
@@ -113,7 +114,9 @@ def body_heat_table(states: Sequence[MachineState], lubrication: Lubrication) ->
 
 
 def _bulk(lubrication: Lubrication, heat: float, pinion: bool) -> float:
-    """Return the bulk temperature, C, of a body that receives a heat, W; nan if it is borrowed."""
+    """Return the bulk temperature (C) of a body that receives `heat` (W): given, by cooling, or nan if
+    borrowed.
+    """
     match lubrication.bulk:
         case GivenBulk(temperature):
             return temperature
@@ -124,17 +127,18 @@ def _bulk(lubrication: Lubrication, heat: float, pinion: bool) -> float:
 
 
 def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
-    """Tabulate power and loss of the machine.
+    """Tabulate power, loss, efficiency and lost energy of the machine.
 
     Parameters
     ----------
     states : Sequence[MachineState]
-        States of the machine.
+        States of the machine: bin 0 is the nominal load, others are bins of the duty cycle.
 
     Returns
     -------
     pd.DataFrame
-        One row for each state, and with a duty cycle a last one of all its bins, columns MACHINE_COLUMNS.
+        One row for each state, columns MACHINE_COLUMNS. With a duty cycle a last row, bin -1, holds the
+        means of its bins weighted by hours, and the sum of their lost energy.
     """
     rows = [_row(state) for state in states]
     bins = [row for row, state in zip(rows, states, strict=True) if state.bin > 0]
@@ -144,7 +148,7 @@ def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
 
 
 def _row(state: MachineState) -> dict[str, object]:
-    """Return the row of table `machine` of one bin of the duty cycle."""
+    """Return one row of `machine_loss_table`, keyed by MACHINE_COLUMNS, for one state of the machine."""
     loss = state.losses.total
     return {
         "bin": state.bin,
@@ -157,10 +161,15 @@ def _row(state: MachineState) -> dict[str, object]:
 
 
 def _whole(bins: pd.DataFrame) -> dict[str, object]:
-    """Return the row of the whole duty cycle: means weighted by the hours of the bins."""
+    """Return the row of the whole duty cycle, bin -1, from the rows of its bins (columns MACHINE_COLUMNS).
+
+    Powers, loss and speed are means weighted by the hours; efficiency is that of the means, and energies
+    are summed.
+    """
     hours = bins["hours"].sum()
 
     def mean(values: pd.Series) -> float:
+        """Average a column over the bins, weighted by their hours."""
         return float((values * bins["hours"]).sum() / hours)
 
     through = mean(bins["power_through_meshes"] * bins["power_in_w"])
@@ -175,7 +184,11 @@ def _whole(bins: pd.DataFrame) -> dict[str, object]:
 
 
 def _powers(power_in: float, through: float, loss: float) -> dict[str, float]:
-    """Power (W) in, what passes through meshes over it, and the loss; nan over a power of 0."""
+    """Return five cells of a row of MACHINE_COLUMNS from power in, power through all meshes and loss, all
+    in W.
+
+    `power_through_meshes` is a ratio to the power in; ratios are nan where no power goes in.
+    """
     over = power_in if power_in > 0 else np.nan
     return {
         "power_in_w": power_in,

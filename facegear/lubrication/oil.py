@@ -32,14 +32,14 @@ class PowerOfViscosity:
     exponent: float
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Compute the pressure-viscosity coefficient as a power of the viscosity.
+        """Compute the pressure-viscosity coefficient s nu^t in 1/GPa with nu in mm2/s (Gold et al. 2001).
 
         Parameters
         ----------
         kinematic : (...) array
-            Kinematic viscosity, m2/s.
+            Kinematic viscosity nu, m2/s.
         dynamic : (...) array
-            Dynamic viscosity, Pa s.
+            Dynamic viscosity, Pa s; not used by this law.
 
         Returns
         -------
@@ -54,14 +54,14 @@ class PolyolEster:
     """Pressure coefficient of MIL-L-23699 as a public rolling bearing code has it."""
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Compute the pressure-viscosity coefficient of polyol esters from their viscosity.
+        """Compute the pressure-viscosity coefficient of MIL-L-23699, e^(1.15607 ln eta - 17.496) / eta.
 
         Parameters
         ----------
         kinematic : (...) array
-            Kinematic viscosity, m2/s.
+            Kinematic viscosity, m2/s; not used by this law.
         dynamic : (...) array
-            Dynamic viscosity, Pa s.
+            Dynamic viscosity eta, Pa s.
 
         Returns
         -------
@@ -78,14 +78,14 @@ class FixedCoefficient:
     value: float
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Return the pressure coefficient, which is the same for every viscosity.
+        """Return the given pressure coefficient, the same for every viscosity.
 
         Parameters
         ----------
         kinematic : (...) array
-            Kinematic viscosity, m2/s.
+            Kinematic viscosity, m2/s; only its shape is used.
         dynamic : (...) array
-            Dynamic viscosity, Pa s.
+            Dynamic viscosity, Pa s; not used by this law.
 
         Returns
         -------
@@ -122,18 +122,20 @@ class Oil:
 
     @property
     def slope(self) -> float:
-        """Slope B of log10 log10(nu + 0.7) = A - B log10 T."""
+        """Slope B of ASTM D341, log10 log10(nu + 0.7) = A - B log10 T, nu in mm2/s, T in K, from the two
+        viscosities.
+        """
         return (_double_log(self.viscosities[0]) - _double_log(self.viscosities[1])) / (
             log10(self.temperatures[1] + ZERO) - log10(self.temperatures[0] + ZERO)
         )
 
     @property
     def intercept(self) -> float:
-        """Intercept A of log10 log10(nu + 0.7) = A - B log10 T."""
+        """Intercept A of ASTM D341, log10 log10(nu + 0.7) = A - B log10 T, nu in mm2/s, T in K."""
         return _double_log(self.viscosities[0]) + self.slope * log10(self.temperatures[0] + ZERO)
 
     def kinematic_viscosity(self, temperature: ArrayLike) -> Array:
-        """Compute the kinematic viscosity nu by ASTM D341.
+        """Compute the kinematic viscosity nu by ASTM D341, through both given viscosities.
 
         Parameters
         ----------
@@ -149,7 +151,7 @@ class Oil:
         return 1e-6 * (10.0**10.0 ** (self.intercept - self.slope * np.log10(kelvin)) - SHIFT)
 
     def density_at(self, temperature: ArrayLike) -> Array:
-        """Compute the density.
+        """Compute the density: the given one at 15 C, less 0.7 kg/m3 per degree (ISO/TR 15144-1).
 
         Parameters
         ----------
@@ -164,7 +166,7 @@ class Oil:
         return self.density - DENSITY_SLOPE * (np.asarray(temperature, float) - REFERENCE)
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Compute the dynamic viscosity.
+        """Compute the dynamic viscosity: kinematic viscosity times density at the same temperature.
 
         Parameters
         ----------
@@ -218,7 +220,7 @@ class Oil:
         )
 
     def conductivity_of(self, temperature: ArrayLike) -> Array:
-        """Compute the thermal conductivity.
+        """Compute the thermal conductivity, which falls linearly with temperature.
 
         Parameters
         ----------
@@ -235,5 +237,5 @@ class Oil:
 
 
 def _double_log(viscosity: float) -> float:
-    """Return the left side of the Walther equation (ASTM D341) for a viscosity, m^2/s."""
+    """Return log10 log10(nu + 0.7), nu in mm2/s (ASTM D341), of a kinematic viscosity given in m2/s."""
     return log10(log(1e6 * viscosity + SHIFT) / log(10.0))

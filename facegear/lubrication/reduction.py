@@ -50,33 +50,34 @@ class Group:
 
     @classmethod
     def of(cls, by_torque: Sequence[ContactPoints]) -> "Group":
-        """Build the group from the contact points of each torque.
+        """Join the contact points of t torques into one array and remember where each torque's points lie.
 
         Parameters
         ----------
         by_torque : Sequence[ContactPoints]
-            Points of each torque.
+            Points of each torque, t entries.
 
         Returns
         -------
         Group
-            The group.
+            All points (m,), torque by torque, and `parts`: t slices into them.
         """
         ends = np.cumsum([0, *(points.plane.size for points in by_torque)]).tolist()
         return cls(concatenate(by_torque), tuple(slice(*bounds) for bounds in pairwise(ends)))
 
     def reduce_by_torque(self, how: Callable[..., Array], values: Array, empty_value: float) -> Array:
-        """Reduce values at the points to one value for each torque.
+        """Reduce values at the points of all torques to one value for each torque, such as a sum or a
+        maximum.
 
         Parameters
         ----------
         how : callable
-            NumPy reduction with arguments `axis` and `initial`, such as np.sum; any unit, from (n, k) to
-            (n,).
+            NumPy reduction that takes (n, k), `axis=1` and `initial`, and returns (n,): np.sum, np.max or
+            np.min.
         values : (n, m) array
-            Values at the points, any unit.
+            Values at the points, one row for each of n meshes, any unit.
         empty_value : float
-            Value where a torque has no point, in the unit of the values.
+            Passed as `initial`: it also takes part in the reduction where a torque has points.
 
         Returns
         -------
@@ -101,20 +102,24 @@ class FewPlaces:
 
 
 def reduce_contacts(contacts: Sequence[LoadedContact], conditions: Sequence[Condition]) -> FewPlaces:
-    """Choose few points of contacts that give loss and extremes for any state within the range of the
+    """Choose few points of loaded contacts that give loss, heat and extremes within the range of
     conditions.
+
+    At each torque apart: cubature weights preserve the loss and the pinion's heat at every condition
+    exactly (but for rounding). The points of largest flash and smallest films at each condition are kept
+    whole.
 
     Parameters
     ----------
     contacts : Sequence[LoadedContact]
-        Contacts at rising torques.
+        Contacts with all their points, at rising torques.
     conditions : Sequence[Condition]
-        States that the points must be right at.
+        Pinion speeds, lubrications and bulk temperatures that span the range of use.
 
     Returns
     -------
     FewPlaces
-        The points with their weights.
+        Points and weights of the loss, and the extreme points, for all torques.
     """
     loss_points, weights, extreme = zip(*(_few(contact, conditions) for contact in contacts), strict=True)
     return FewPlaces(
@@ -128,7 +133,12 @@ def reduce_contacts(contacts: Sequence[LoadedContact], conditions: Sequence[Cond
 def _few(
     contact: LoadedContact, conditions: Sequence[Condition]
 ) -> tuple[ContactPoints, Array, ContactPoints]:
-    """Return the points that carry the loss, with their weights, and the extreme points."""
+    """Choose the points of one torque's contact that stand for all of its points at the conditions.
+
+    Returned are the k points that carry the loss, their weights (k,) in N m (loss at a friction
+    coefficient of 1 and 1 rad/s of the pinion), and the points that may have the largest flash or the
+    smallest film.
+    """
     spots, whole = contact.points, contact.weights
     states = [
         local_state(spots, condition.speed, condition.lubrication, condition.bulk) for condition in conditions
@@ -143,19 +153,21 @@ def _few(
 
 
 def cubature(rows: Array) -> Array:
-    """Compute sparse non-negative weights that preserve every row sum (cubature).
+    """Compute sparse non-negative weights w with which `rows @ w` equals the sum of every row (cubature).
 
-    Rows of sum 0 are left out.
+    Non-negative least squares match the sums of the right singular vectors of the rows, each divided by
+    its sum. Singular values below SINGULAR times the largest are dropped, so sums are exact but for
+    rounding. Rows whose sum is not above 0 are left out.
 
     Parameters
     ----------
     rows : (r, m) array
-        Rows, any unit.
+        Non-negative rows, such as the loss at m points under r conditions; any unit.
 
     Returns
     -------
     (m,) array
-        Weights, most of them 0, dimensionless.
+        Weights, dimensionless; most are 0, and all if no row has a positive sum.
     """
     sums = rows.sum(axis=1)
     scaled_rows = rows[sums > 0.0] / sums[sums > 0.0, None]
@@ -168,8 +180,11 @@ def cubature(rows: Array) -> Array:
 
 
 def _extremes(spots: ContactPoints, state: Local, is_borrowed: bool) -> Integers:
-    """Find the points of the largest flash and the smallest films; with `is_borrowed` the hottest of each
-    line too.
+    """Return the indices of points that may be the hottest or have the thinnest film.
+
+    They are the CONTENDERS points of largest flash, of smallest film ratio and of smallest micropitting
+    ratio, all away from edges. With `is_borrowed` the point of largest flash of each contact line is
+    added, which the mean flash along the path needs. Indices into the points, possibly repeated.
     """
     on = np.flatnonzero(spots.inside)
     if on.size == 0:
@@ -194,45 +209,51 @@ class ReducedPair:
 
     @property
     def torques(self) -> Array:
-        """Torques of the contacts, N m."""
+        """Pinion torques (t,) N m at which the contact was solved, rising."""
         return self.few.torques
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
+        """Compute the friction loss of meshes at every solved torque, at given bulk temperatures.
 
         Parameters
         ----------
         speed : float
             Pinion speed, rad/s.
         bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
+            Bulk temperatures of pinion and gear of each mesh, C; only their mean counts.
 
         Returns
         -------
         LossCurves
-            Loss of the meshes (n, t).
+            Lost part of the power, and the pinion's part of its heat, both (n, t).
         """
         return LossCurves(self.torques, *self._loss_fractions(speed, self._at_torques(bulk)))
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes at every torque, at given bulk temperatures.
+        """Compute loss, temperature and film of meshes at every solved torque, at given bulk temperatures.
 
         Parameters
         ----------
         speed : float
             Pinion speed, rad/s.
         bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
+            Bulk temperatures of pinion and gear of each mesh, C; only their mean counts.
 
         Returns
         -------
         MeshCurves
-            Loss, temperature and film of the meshes (n, t).
+            Lost part of the power, the pinion's part of its heat, largest flash (K), smallest film ratio
+            and smallest micropitting ratio, each (n, t).
         """
         return self._curves(speed, self._at_torques(bulk))
 
     def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
-        """Compute one mesh with the bulk temperatures that the section gives it at each torque.
+        """Compute one mesh alone, with the bulk temperatures that follow from `lubrication.bulk` at each
+        torque.
+
+        A given bulk temperature is taken as it is. A borrowed one (ISO/TR 13989-1) is the oil's
+        temperature plus 0.47 X_S times the mean flash, found by iteration. With cooling, use
+        `machine_loss`, which couples the meshes.
 
         Parameters
         ----------
@@ -257,6 +278,9 @@ class ReducedPair:
             factor, points = 0.47 * lubrication.bulk.supply_factor, few.extreme.points
 
             def step(before: Array) -> Array:
+                """Return the bulk temperatures (t, 2) C that the mean flash at bulk temperatures `before`
+                (t, 2) C gives.
+                """
                 flash = local_state(
                     points, speed, lubrication, _spread(few.extreme, before.mean(axis=1))
                 ).flash
@@ -267,12 +291,18 @@ class ReducedPair:
         return self._curves(speed, bulk.mean(axis=1)[None]), bulk
 
     def _at_torques(self, bulk: Array) -> Array:
-        """Mean bulk temperatures (n, t) C, the same at every torque."""
+        """Average bulk temperatures (n, 2) C of pinion and gear, and repeat the mean at every torque: (n,
+        t) C.
+        """
         return np.repeat(bulk.mean(axis=1, keepdims=True), self.torques.size, axis=1)
 
     def _loss_fractions(self, speed: float, warm: Array) -> tuple[Array, Array]:
-        """Return the part of the power that is lost, and the pinion's part of its heat (n, t), at mean bulk
-        (n, t) C.
+        """Return the lost part of each mesh's power, and the pinion's part of the lost heat, both (n, t),
+        fractions.
+
+        `speed` is the pinion's, rad/s, and `warm` (n, t) the mean bulk temperature, C. The loss is the
+        sum of friction * weight over the points, per torque. Where nothing is lost, the pinion's part is
+        0.5.
         """
         few, group = self.few, self.few.loss_points
         friction, fraction = friction_and_heat_fraction(
@@ -288,7 +318,11 @@ class ReducedPair:
         return lost_power / few.torques, pinion_fraction
 
     def _curves(self, speed: float, warm: Array) -> MeshCurves:
-        """Compute the curves of n meshes with mean bulk temperatures (n, t) C at the torques."""
+        """Return loss, largest flash and smallest films of n meshes at t torques.
+
+        `speed` is the pinion's, rad/s, and `warm` (n, t) the mean bulk temperature of the flanks, C.
+        Where a torque has no point away from edges, the flash is 0 and the films are infinite.
+        """
         group = self.few.extreme
         state = local_state(group.points, speed, self.lubrication, _spread(group, warm))
         shape = warm.shape[0], group.points.plane.size
@@ -305,5 +339,7 @@ class ReducedPair:
 
 
 def _spread(group: Group, values: Array) -> Array:
-    """Repeat values (..., t) of torques at the points (..., m) of a group."""
+    """Repeat one value per torque, (..., t), at each point of that torque: (..., m), in the order of the
+    group.
+    """
     return np.repeat(values, [part.stop - part.start for part in group.parts], axis=-1)

@@ -19,12 +19,12 @@ class FlankMaterial:
 
     @property
     def diffusivity(self) -> float:
-        """Thermal diffusivity, m2/s."""
+        """Thermal diffusivity kappa = conductivity / (density heat capacity), m2/s."""
         return self.conductivity / (self.density * self.heat_capacity)
 
     @property
     def contact_coefficient(self) -> float:
-        """B = sqrt(k rho c), W s^0.5/(m2 K)."""
+        """Thermal contact coefficient B = sqrt(conductivity density heat capacity), W s^0.5/(m2 K)."""
         return float(np.sqrt(self.conductivity * self.density * self.heat_capacity))
 
 
@@ -77,12 +77,12 @@ class Lubrication:
 
     @property
     def mean_ra(self) -> float:
-        """Mean of both flanks' Ra, m."""
+        """Mean of the arithmetic roughness Ra of both flanks, m."""
         return 0.5 * sum(self.ra)
 
     @property
     def composite_rq(self) -> float:
-        """Root of the sum of the squares of Rq, m."""
+        """Composite roughness: root of the sum of the squares of both flanks' Rq, m."""
         return float(np.hypot(*self.rq))
 
 
@@ -103,7 +103,11 @@ class Limits:
     film_ratio: float | None
 
     def allowed_contact(self, oil: Oil, oil_temperature: float) -> float:
-        """Return the allowed contact temperature.
+        """Return the allowed contact temperature for the flash temperature method of scuffing.
+
+        The given `contact_temperature` wins. Else it follows from the FZG load stage
+        (`allowed_flash_temperature`), the oil's lubricant factor being multiplied by eta^-0.05 (eta in
+        mPa s at the oil's temperature).
 
         Parameters
         ----------
@@ -115,7 +119,7 @@ class Limits:
         Returns
         -------
         float
-            Temperature, C; nan where nothing gives it.
+            Temperature, C; nan where neither a temperature nor a load stage is given.
         """
         if self.contact_temperature is not None:
             return self.contact_temperature
@@ -125,7 +129,8 @@ class Limits:
         return allowed_flash_temperature(self.fzg_stage, self.structure_factor, factor)
 
     def allowed_integral(self, oil: Oil) -> float:
-        """Return the allowed integral temperature.
+        """Return the allowed integral temperature (ISO/TS 6336-21) from the FZG load stage and the oil's
+        viscosity at 40 C.
 
         Parameters
         ----------
@@ -135,7 +140,7 @@ class Limits:
         Returns
         -------
         float
-            Temperature, C; nan without a load stage.
+            Temperature, C; nan without a load stage, even if a contact temperature is given.
         """
         if self.fzg_stage is None:
             return np.nan
@@ -144,16 +149,17 @@ class Limits:
         )
 
     def micropitting_safety(self, ratio: float) -> float:
-        """Compute the safety of a specific film against micropitting.
+        """Compute the safety against micropitting: smallest film ratio over the allowed one (ISO/TS
+        6336-22).
 
         Parameters
         ----------
         ratio : float
-            Specific film, a ratio.
+            Smallest specific film lambda_GF, local film over mean Ra, dimensionless.
 
         Returns
         -------
         float
-            Safety, a ratio; nan where no film is allowed.
+            Safety, a ratio; nan where the allowed film ratio is not known.
         """
         return ratio / self.film_ratio if self.film_ratio is not None else np.nan

@@ -41,7 +41,10 @@ class SplitMachine:
     pressure_angle: float
 
     def input_k_gamma(self, input_bearing: float, idler_bearing: float) -> float:
-        """Mesh load factor of the harder loaded mesh of an input, without errors.
+        """Compute the mesh load factor of the harder loaded mesh (upper gear) of an input, without errors.
+
+        min(1 + (loop + gap) / (softness + loop), 2) with gap = backlash * mesh stiffness / input force,
+        `_loop` and `_softness`. The idlers' compliance and the backlash delay the lower mesh.
 
         Parameters
         ----------
@@ -58,20 +61,20 @@ class SplitMachine:
         return float(min(1.0 + (loop + gap) / (self._softness(input_bearing) + loop), 2.0))
 
     def input_bearing_for(self, k_gamma: float, idler_bearing: float) -> float:
-        """Return the radial stiffness of an input's bearing at which an input has a given K_gamma without
-        errors.
+        """Return the radial stiffness of an input's bearing at which K_gamma is a given one:
+        `input_k_gamma` inverted.
 
         Parameters
         ----------
         k_gamma : float
-            Mesh load factor of the harder loaded mesh of an input, dimensionless.
+            Wanted mesh load factor of the harder loaded mesh of an input, above 1, dimensionless.
         idler_bearing : float
             Radial stiffness of the bearing of an idler, N/m.
 
         Returns
         -------
         float
-            N/m. Infinite where even a rigid bearing shares better, 0 where no bearing is soft enough.
+            N/m. Infinite where even a rigid bearing shares better.
         """
         loop = self._loop(idler_bearing)
         gap = self.backlash * self.mesh_stiffness / self.input_force
@@ -81,7 +84,9 @@ class SplitMachine:
         return 2.0 * self.mesh_stiffness / (softness - 1.0)
 
     def idler_force(self, input_bearing: float, idler_bearing: float) -> float:
-        """Return the mean force of each of the two meshes of an idler, without errors.
+        """Return the force of each of the two meshes of an idler, without errors.
+
+        It is the lower mesh force of an input (what `input_k_gamma` leaves) times inputs over idlers.
 
         Parameters
         ----------
@@ -93,13 +98,15 @@ class SplitMachine:
         Returns
         -------
         float
-            N.
+            Force along the line of action, N.
         """
         lower = 0.5 * self.input_force * (2.0 - self.input_k_gamma(input_bearing, idler_bearing))
         return lower * self.inputs / self.idlers
 
     def path_stiffness(self, idler_bearing: float) -> float:
         """Return the stiffness k_e of the path through an idler: two meshes and the bearing in series.
+
+        1 / (2 / mesh stiffness + 4 cos^2(pressure angle) / bearing stiffness).
 
         Parameters
         ----------
@@ -109,25 +116,35 @@ class SplitMachine:
         Returns
         -------
         float
-            N/m.
+            Force between the gears over their approach along the line of action, N/m.
         """
         cosine = np.cos(self.pressure_angle)
         return float(1.0 / (2.0 / self.mesh_stiffness + 4.0 * cosine**2 / idler_bearing))
 
     def _loop(self, idler_bearing: float) -> float:
-        """Return the misfit that the idlers add to the loop of an input's two meshes, over the force of its
-        lower mesh.
+        """Return the compliance that the idlers add to the loop of an input's two meshes, times the mesh
+        stiffness.
+
+        It is inputs/idlers (1 + 2 k cos^2(alpha) / bearing): misfit over the force of the input's lower
+        mesh, dimensionless. `idler_bearing` is the radial stiffness of an idler's bearing, N/m.
         """
         bending = 2.0 * self.mesh_stiffness * np.cos(self.pressure_angle) ** 2 / idler_bearing
         return float(self.inputs / self.idlers * (1.0 + bending))
 
     def _softness(self, input_bearing: float) -> float:
-        """Return by which factor the bearings of the inputs soften their meshes, dimensionless."""
+        """Return 1 + 2 k / bearing: compliance of an input's mesh with its bearing, over that of the mesh
+        alone.
+
+        `input_bearing` is the radial stiffness of an input's bearing, N/m; k is the mesh stiffness.
+        """
         return 1.0 + 2.0 * self.mesh_stiffness / input_bearing
 
 
 def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -> Array:
-    """Forces of equal paths that share a load, all of them closed.
+    """Compute the forces of equal, evenly spaced paths that share a load while all of them stay in contact.
+
+    Each path carries W / N, less k_e times its lateness beyond the mean (Singh 2010). A central member that
+    moves in its plane takes up the part of the lateness that goes once around the gear.
 
     Parameters
     ----------
@@ -136,15 +153,17 @@ def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -
     stiffness : float
         Stiffness k_e of each path, N/m.
     errors : (..., paths) array
-        How late each path is along the line of action, m; the paths stand evenly around the gear.
+        How late each path is along the line of action, m: a late path carries less. Paths stand evenly
+        around the gear, in order of angle.
     freedom : float
         `plane_freedom`: 1 where one of the two central members moves freely in its plane, 0 where both are
-        held.
+        fixed.
 
     Returns
     -------
     (..., paths) array
-        Force of each path, N.
+        Force of each path, N. Values below 0 mean that the path would lose contact and the formula does
+        not hold.
     """
     late = np.asarray(errors, dtype=float)
     count = late.shape[-1]
@@ -157,25 +176,27 @@ def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -
 def plane_freedom(
     paths: int, stiffness: float, bearings: tuple[float, float], pressure_angle: float
 ) -> float:
-    """Part of a one-sided lateness of the paths that the central members' motion in their planes takes up.
+    """Compute which part of a one-sided lateness of the paths the central members' motion in their planes
+    takes up.
 
     Late paths on one side push the two members apart sideways, against both of their bearings in series.
+    The result is c / (1 + c), c being the bearings' compliance times the paths' sideways stiffness.
 
     Parameters
     ----------
     paths : int
-        Number of equal paths.
+        Number of equal paths, at least 2.
     stiffness : float
         Stiffness k_e of each path, N/m.
     bearings : (2,) tuple of float
-        Radial stiffness of the bearing of each central member, N/m.
+        Radial stiffness of the bearing of each central member, N/m; 0: it floats.
     pressure_angle : float
         Pressure angle, rad.
 
     Returns
     -------
     float
-        Dimensionless: 1 where one member floats freely, 0 where both are held.
+        Dimensionless: 1 where one member floats freely, 0 where both are fixed.
     """
     sideways = paths / _sideways(paths) * stiffness * np.cos(pressure_angle) ** 2
     compliance = sum(sideways / bearing if bearing > 0.0 else np.inf for bearing in bearings)
@@ -183,17 +204,22 @@ def plane_freedom(
 
 
 def _sideways(paths: int) -> int:
-    """Directions in which paths push a member sideways: two, but one where two paths oppose each other."""
+    """Return the number of directions (1 or 2) in which paths push a member sideways: two paths oppose
+    each other and have one.
+    """
     return min(paths - 1, 2)
 
 
 def parting_number(paths: int, floating: bool) -> float:
-    """Number X_e = k_e e / W at which a path that alone is late by e loses contact.
+    """Compute the number X_e = k_e e / W at which a path that alone is late by e loses contact.
+
+    It is 1 / (N - 1), or 1 / (N - 3) with a floating member. e is in m, k_e the path stiffness, W the sum
+    of forces.
 
     Parameters
     ----------
     paths : int
-        Number of equal paths.
+        Number N of equal paths.
     floating : bool
         Whether one of the two central members moves freely in its plane.
 
@@ -207,12 +233,16 @@ def parting_number(paths: int, floating: bool) -> float:
 
 
 def share_deviation(paths: int, number: float, freedom: float) -> float:
-    """Standard deviation of paths times the force of a path over W, of independent errors; dimensionless.
+    """Compute the standard deviation of N times the force of a path over W, for independent errors of the
+    paths.
+
+    X sqrt(N (N - 3)) where a member floats, X sqrt(N (N - 1)) where both are fixed; with intermediate
+    freedom in between. It holds while all paths carry.
 
     Parameters
     ----------
     paths : int
-        Number of equal paths.
+        Number N of equal paths.
     number : float
         X = k_e times the standard deviation of the errors over W, dimensionless.
     freedom : float
@@ -221,28 +251,30 @@ def share_deviation(paths: int, number: float, freedom: float) -> float:
     Returns
     -------
     float
-        X sqrt(N (N - 3)) where a member floats, X sqrt(N (N - 1)) where both are held, while all paths carry.
+        Standard deviation, dimensionless; an even share is 1.
     """
     left = paths - 1.0 - _sideways(paths) * (1.0 - (1.0 - freedom) ** 2)
     return float(number * np.sqrt(paths * left))
 
 
 def k_gamma_samples(number: Array | float, draws: Array, freedom: float) -> Array:
-    """Load factor of the hardest loaded path for drawn errors, dimensionless.
+    """Compute the load factor of the hardest loaded path for drawn errors, by the closed form.
+
+    It is 1 + c X, where c is N times the largest `path_forces` of the sample's errors at W = 0 and k_e = 1.
 
     Parameters
     ----------
     number : (...,) array or float
         X = k_e times the standard deviation of the errors over W, dimensionless.
     draws : (samples, paths) array
-        Errors over their standard deviation, dimensionless.
+        Errors (late positive) over their standard deviation, dimensionless.
     freedom : float
         `plane_freedom`, dimensionless.
 
     Returns
     -------
     (..., samples) array
-        1 + c X with c of each sample. It holds while all paths carry.
+        Largest force of a path over W / N, for each number and sample. It holds while all paths carry.
     """
     count = draws.shape[1]
     uneven = count * path_forces(0.0, 1.0, draws, freedom).max(axis=1)

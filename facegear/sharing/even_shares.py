@@ -39,43 +39,46 @@ def sharing_coefficient(forces: Array) -> Array:
 
 
 def lost_contact(forces: Array) -> Mask:
-    """Return where at least one of the paths carries nothing.
+    """Tell at which instants at least one of the paths carries exactly no force.
 
     Parameters
     ----------
     forces : (..., paths) array
-        Forces, N.
+        Forces without rounding (`facegear.machine.flanks.significant_forces`), N.
 
     Returns
     -------
     (...) array of bool
-        True if a force is 0.
+        True if the force of some path is 0.
     """
     return (_path_by_path(forces) == 0.0).any(axis=0)
 
 
 def _path_by_path(forces: Array) -> Array:
-    """Forces (paths, ...), each path in one piece: sums over two or three neighbours in memory are slow."""
+    """Move the last axis of forces (..., paths) to the front, (paths, ...), and make each path contiguous.
+
+    Sums over two or three neighbours in memory are slow.
+    """
     return np.ascontiguousarray(np.moveaxis(np.asarray(forces, dtype=float), -1, 0))
 
 
 def even_shares(machine: Machine) -> Array:
-    """Return the nominal even share of the load at each mesh.
+    """Compute the nominal even share of the load at each mesh, from torques alone.
 
-    With one face gear a mesh carries its own pinion's torque. Between two, an input gives half of its torque
-    to each, and idlers and tails share evenly what the lower gear passes on; without idlers the inputs serve
-    the lower gear's own load in proportion to their torques. Mesh load factors (K_gamma of ISO 6336-1, AGMA
-    6123) count from these.
+    With one face gear a mesh carries its own pinion's torque. Between two, an input gives half of its
+    torque to each, and idlers and tails share evenly what the lower gear passes on; without idlers the
+    inputs serve the lower gear's own load in proportion to their torques. Mesh load factors (K_gamma of
+    ISO 6336-1, AGMA 6123) count from these.
 
     Parameters
     ----------
     machine : Machine
-        The machine.
+        Its layout and mean torques on pinions and gears are used.
 
     Returns
     -------
     (meshes,) array
-        N along the line of action; nan where a mesh has none.
+        Magnitude in N along the line of action, in the order of `Layout.meshes`; nan where a mesh has none.
     """
     layout = machine.layout
     pinion_torques = machine.torques[: len(layout.pinions)] / layout.pinion_arm
@@ -88,7 +91,8 @@ def even_shares(machine: Machine) -> Array:
 def _even_forces(layout: Layout, coefficients: Array, on_gears: Array) -> Array:
     """Return the forces (meshes,), N, positive where the pinion drives, that share every torque evenly.
 
-    `coefficients` (pinions,): force that each pinion's torque needs; `on_gears`: torque on each gear, N m.
+    `coefficients` (pinions,) N: torque of each pinion over its arm, the sum of its mesh forces.
+    `on_gears` (gears,) N m: torque on each gear; only the lower gear's counts, and only with two gears.
     """
     if len(layout.gears) == 1:
         return coefficients
@@ -132,23 +136,24 @@ class GroupSharing:
 
 
 def cycle_forces(motion: DenseMotion) -> Array:
-    """Return the elastic mesh forces by cycle.
+    """Reshape the elastic mesh forces of a motion to mesh cycles and samples.
 
     Parameters
     ----------
     motion : DenseMotion
-        Densely sampled motion.
+        Densely sampled motion over whole mesh cycles.
 
     Returns
     -------
     (meshes, cycles, samples) array
-        N.
+        N, in the order of `Layout.meshes`.
     """
     return motion.loads.reshape(len(motion.loads), -1, motion.per_period)
 
 
 def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
-    """Return coefficient and lost contact of a group, and their average.
+    """Compute the load-sharing coefficient of a group over a motion, where contact is lost, and the
+    average.
 
     Parameters
     ----------
@@ -157,12 +162,13 @@ def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> t
     group : LoadGroup
         Meshes that share a load.
     confidence : float
-        Confidence level from 0 to 1, dimensionless.
+        Confidence level of the mean from 0 to 1, dimensionless.
 
     Returns
     -------
     tuple of (cycles, samples) array, (cycles, samples) array of bool and Average
-        Coefficient (dimensionless), whether a path is without load, and averages over all defined instants.
+        Coefficient (dimensionless, nan where all forces are 0), whether a path is without load, and
+        averages over all defined instants.
     """
     forces = np.moveaxis(cycle_forces(motion)[list(group.meshes)], 0, -1)
     coefficients, lost_mask = sharing_coefficient(forces), lost_contact(forces)
@@ -171,7 +177,9 @@ def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> t
 
 
 def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
-    """Return the mean coefficient of each group, nan where no mesh is ever loaded."""
+    """Return the mean load-sharing coefficient of each group over a motion, nan where no mesh is ever
+    loaded.
+    """
     forces = np.moveaxis(cycle_forces(motion), 0, -1)
     return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
 
@@ -183,8 +191,12 @@ def _group(
     start_means: list[float],
     again: list[float],
 ) -> GroupSharing:
-    """Return the result of a group; `start_means` are the means from other starts, of which `again` are those
-    of the same irregular motion.
+    """Return the result of one group, with coefficient and lost contact thinned to about
+    `options.samples` a cycle.
+
+    `start_means` are its mean coefficients in the motions from the other starts, which give the range.
+    `again` are those of them in the same class of irregular motion, which may widen the half-width
+    (`held_over_starts`).
     """
     coefficients, lost_mask, first = group_average(motion, group, options.confidence)
     every = max(coefficients.shape[1] // options.samples, 1)

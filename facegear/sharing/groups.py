@@ -45,12 +45,14 @@ class LoadGroup:
 
     @property
     def splits_load(self) -> bool:
-        """Whether the machine splits a load among the meshes, so that a load-sharing coefficient exists."""
+        """Whether the machine splits one load among the meshes, so that a load-sharing coefficient
+        exists; False for independent pinions.
+        """
         return self.kind is not GroupKind.INDEPENDENT
 
 
 def split_groups(layout: Layout) -> tuple[LoadGroup, ...]:
-    """Return the groups among whose meshes the machine splits a load.
+    """Return those groups of `load_groups` among whose meshes the machine splits a load.
 
     Parameters
     ----------
@@ -60,13 +62,17 @@ def split_groups(layout: Layout) -> tuple[LoadGroup, ...]:
     Returns
     -------
     tuple of LoadGroup
-        Empty where nothing is split.
+        Groups of kind INPUTS and IDLERS; empty where nothing is split, as with one face gear.
     """
     return tuple(group for group in load_groups(layout) if group.splits_load)
 
 
 def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
-    """Return the groups of a layout with at least two meshes each; the tail pinion counts as an idler.
+    """Return the groups of meshes that are compared with each other, each with at least two meshes.
+
+    With two face gears: each input pinion's two meshes, then the lower meshes of all idlers and tails.
+    With one face gear: the meshes of all inputs, and of all idlers, as independent ones that split
+    nothing.
 
     Parameters
     ----------
@@ -76,7 +82,7 @@ def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
     Returns
     -------
     tuple of LoadGroup
-        Inputs first, then idlers.
+        Inputs first, then idlers, with which tail pinions count.
     """
     of_role: dict[bool, list[int]] = {True: [], False: []}
     for i, pinion in enumerate(layout.pinions):
@@ -106,30 +112,31 @@ def quantity_names(
     friction: bool = False,
     law: bool = False,
 ) -> tuple[str, ...]:
-    """Return the columns of a sample.
+    """Return the names of the quantities of one machine, in the order of the columns of a table of samples.
 
-    `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even share
-    (`facegear.sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that mean;
-    `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26)); then the
-    largest load of a mesh, the fraction of time in which some mesh that shares a load carries nothing, and in
-    which some mesh is loaded on the flank that it does not work on; the mass of bearings for the loads on
-    them (`facegear.sharing.quantities`).
+    `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even
+    share (`facegear.sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that
+    mean; `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
+    then the largest load of a mesh, the fraction of time in which some mesh that shares a load carries
+    nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings
+    for the loads on them (`facegear.sharing.quantities`).
 
     Parameters
     ----------
     layout : Layout
         Bodies and meshes.
     dynamic : bool
-        Whether the quantities are of the motion.
+        True: quantities of the motion at speed, with k_v. False: of the quasi-static machine.
     contact : bool
         Whether the loaded transmission error of the tooth pair and its pressure are listed.
     gauges : bool
-        Whether the root stress of both bodies is listed, too (`facegear.strength.contact_pressure`).
+        Whether the root stress of both bodies is listed, too (`facegear.strength.contact_pressure`); only
+        with `contact`.
     jumps : bool
         Whether the distance from the operating speed to the nearest jump is listed
         (`facegear.motion.sweeps.whole_sweep`).
     friction : bool
-        Whether the columns FRICTION are listed.
+        Whether the columns FRICTION of `facegear.quantities` are listed.
     law : bool
         Whether the fraction of positions at which a flank is past the last level of its load-dependent law,
         the largest of all, is listed.
@@ -212,17 +219,20 @@ class MapOptions:
     bearing_factors: tuple[float, ...]
 
     def deviation(self, pressure_angle: float) -> float:
-        """Return the standard deviation of the lateness of a path, m.
+        """Compute the standard deviation of the lateness of an idler path: sqrt(2 mesh_error^2 + (2 cos a
+        position)^2).
+
+        Both meshes err independently; a pinion out of place by x makes its path late by 2 x cos a.
 
         Parameters
         ----------
         pressure_angle : float
-            Pressure angle, rad.
+            Pressure angle a, rad.
 
         Returns
         -------
         float
-            Both meshes err independently; a pinion out of place by x makes its path late by 2 x cos a.
+            Standard deviation along the line of action, m.
         """
         aside = 2.0 * np.cos(pressure_angle) * self.position
         return float(np.sqrt(2.0 * self.mesh_error**2 + aside**2))

@@ -41,22 +41,23 @@ class LoadHistory:
 
     @cached_property
     def loads(self) -> Array:
-        """Load of each mesh (K, meshes), N: its more heavily loaded flank."""
+        """Load (K, meshes), N, of each mesh: the force of its more heavily loaded flank."""
         drive, back = np.split(self.flank_forces, 2, axis=1)
         return np.maximum(drive, back)
 
     @cached_property
     def largest_loads(self) -> Array:
-        """Largest load of each mesh (meshes,), N, at the positions."""
+        """Largest load (meshes,), N, of each mesh at the K instants."""
         return np.asarray(self.loads.max(axis=0))
 
     @property
     def groups(self) -> tuple[LoadGroup, ...]:
-        """Meshes that share one load."""
+        """Groups of meshes that are compared with each other (`load_groups`)."""
         return load_groups(self.machine.layout)
 
     def coefficients(self, group: LoadGroup) -> Array:
-        """Return the largest load of a group over its mean.
+        """Compute the load-sharing coefficient of a group at each instant: largest load over the mean of
+        its meshes.
 
         Parameters
         ----------
@@ -66,7 +67,7 @@ class LoadHistory:
         Returns
         -------
         (K,) array
-            Dimensionless; nan where no mesh carries any, or nothing is split.
+            Dimensionless, 1 to the number of meshes; nan where no mesh carries any, or nothing is split.
         """
         if not group.splits_load:
             return np.full(len(self.loads), np.nan)
@@ -74,12 +75,12 @@ class LoadHistory:
 
     @property
     def largest_torque(self) -> float:
-        """Largest torque on a pinion, N m, to which all K_gamma belong."""
+        """Largest magnitude of a mean torque on a pinion, N m: the load at which all K_gamma are stated."""
         return float(np.abs(self.machine.torques[: len(self.machine.layout.pinions)]).max())
 
     @cached_property
     def cycle_means(self) -> Array:
-        """Mean load of each mesh in each mesh cycle (cycles, meshes), N."""
+        """Mean load (cycles, meshes), N, of each mesh over the instants of each mesh cycle."""
         return self.loads.reshape(-1, self.positions, self.loads.shape[1]).mean(axis=1)
 
     @cached_property
@@ -92,12 +93,14 @@ class LoadHistory:
 
     @cached_property
     def dynamic_factors(self) -> Array:
-        """K_v of each mesh (meshes,): its largest load over its largest mean of a mesh cycle; nan without."""
+        """K_v (meshes,) of each mesh: its largest load over its largest mean of a mesh cycle; nan without
+        load.
+        """
         largest = self.cycle_means.max(axis=0)
         return self.largest_loads / np.where(largest > 0.0, largest, np.nan)
 
     def path_factors(self, group: LoadGroup) -> Array:
-        """Return K_gamma of each path of a group.
+        """Return `mesh_load_factors` (K_gamma) of the meshes of a group.
 
         Parameters
         ----------
@@ -107,12 +110,13 @@ class LoadHistory:
         Returns
         -------
         (meshes of the group,) array
-            Dimensionless.
+            Dimensionless, in the order of `group.meshes`; nan without an even share.
         """
         return self.mesh_load_factors[list(group.meshes)]
 
     def group_ratios(self, group: LoadGroup) -> Array:
-        """Return the largest load of each path over the mean of the group's own loads.
+        """Return the largest load of each mesh over the mean load of all meshes of the group at all
+        instants.
 
         Parameters
         ----------
@@ -132,7 +136,7 @@ class LoadHistory:
 
 
 def largest(values: Array) -> float:
-    """Return the largest of values, nan left out.
+    """Return the largest finite value; nan and infinite values are left out.
 
     Parameters
     ----------
@@ -142,7 +146,7 @@ def largest(values: Array) -> float:
     Returns
     -------
     float
-        In the same unit; nan where there is none.
+        In the same unit; nan where no value is finite.
     """
     defined_values = values[np.isfinite(values)]
     return float(defined_values.max()) if defined_values.size else float("nan")
@@ -156,12 +160,14 @@ class HuntingCycle(LoadHistory):
 
     @cached_property
     def bearings(self) -> Array:
-        """Force of each body on its bearing (K, bodies, 3), N."""
+        """Force (K, bodies, 3), N, of each body on its bearing at each equilibrium, along x, y, z."""
         return bearing_forces(self.machine, self.at_rest)
 
 
 def hunting_length(machine: Machine) -> int:
-    """Return the number of mesh cycles until the pattern repeats.
+    """Return after how many mesh cycles the pattern of the errors repeats.
+
+    It is the least common multiple of the tooth numbers of pinion and gear, of those with errors that turn.
 
     Parameters
     ----------
@@ -182,23 +188,21 @@ def hunting_length(machine: Machine) -> int:
 
 
 def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> HuntingCycle:
-    """Compute the equilibria of the mesh cycles until the pattern repeats.
-
-    This is the limit of slow running: damping and inertia vanish.
+    """Compute static equilibria of the mesh cycles until the pattern repeats: the limit of slow running.
 
     Parameters
     ----------
     machine : Machine
         With geometric meshes.
     positions : int
-        Number of positions in each mesh cycle.
+        Number of evenly spaced positions in each mesh cycle.
     every : int
-        Step between the mesh cycles that are taken; 1 takes all.
+        Only every so-many-th mesh cycle of `hunting_length` is computed; 1 takes all.
 
     Returns
     -------
     HuntingCycle
-        Forces in N.
+        Flank forces (N) and equilibria at K = mesh cycles x positions instants.
 
     Raises
     ------
@@ -209,21 +213,21 @@ def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> Hunt
 
 
 def at_cycles(machine: Machine, whole: Integers, positions: int) -> HuntingCycle:
-    """Compute the equilibria of some mesh cycles.
+    """Compute static equilibria at evenly spaced positions of chosen mesh cycles.
 
     Parameters
     ----------
     machine : Machine
         With geometric meshes.
     whole : (n,) array of int
-        Mesh cycles, counted from 0.
+        Numbers of the mesh cycles of the hunting cycle, counted from 0.
     positions : int
         Number of positions in each mesh cycle.
 
     Returns
     -------
     HuntingCycle
-        Forces in N.
+        Flank forces (N) and equilibria at K = n x positions instants, in the order of `whole`.
 
     Raises
     ------
@@ -343,7 +347,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
 
 
 def group_table(run: HuntingCycle) -> pd.DataFrame:
-    """Return mean, least and largest coefficient, largest K_gamma and group ratio of each group.
+    """Tabulate coefficient, largest K_gamma and group ratio of each group.
 
     Parameters
     ----------
@@ -353,8 +357,8 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a group, columns GROUP_COLUMNS; `torque_n_m` is the largest torque on a pinion, to which all
-        values belong.
+        One row a group, columns GROUP_COLUMNS; mean, least and largest are of the coefficient, nan where
+        nothing is split. `torque_n_m` is the largest torque on a pinion, to which all values belong.
     """
     rows = []
     for group in run.groups:
@@ -432,7 +436,7 @@ def cycle_table(run: LoadHistory) -> pd.DataFrame:
 
 
 def _group_ratios(run: LoadHistory) -> tuple[list[str], Array]:
-    """Return the group of every mesh and the ratio of its load to the group's own mean (meshes,)."""
+    """Return each mesh's group name ("" without one) and its `group_ratios` (meshes,), nan without one."""
     names = [""] * len(run.machine.layout.meshes)
     ratios = np.full(len(names), np.nan)
     for group in run.groups:

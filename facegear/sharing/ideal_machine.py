@@ -23,19 +23,19 @@ IDLERS = (Role.IDLER, Role.TAIL)
 
 
 def loop_factor(mapped: MappedMachine, group: LoadGroup) -> float:
-    """Return K_gamma of an input by the loop formula of docs/explanation/theory.md.
+    """Compute K_gamma of an input by the loop formula (`SplitMachine.input_k_gamma`), without errors.
 
     Parameters
     ----------
     mapped : MappedMachine
-        The machine.
+        The machine; its mean stiffnesses, loads and backlash are put into the formula.
     group : LoadGroup
         Meshes of an input.
 
     Returns
     -------
     float
-        The factor, dimensionless; nan without idlers.
+        Mesh load factor of the harder loaded mesh, dimensionless; nan without idlers or loaded meshes.
     """
     form = split_machine(mapped, group)
     idlers = groups_of_kind(mapped.machine, GroupKind.IDLERS)
@@ -47,6 +47,8 @@ def loop_factor(mapped: MappedMachine, group: LoadGroup) -> float:
 def split_machine(mapped: MappedMachine, group: LoadGroup) -> SplitMachine | None:
     """Return the ideal machine of equal inputs and idlers that is nearest to this one.
 
+    Its mesh stiffness, input force and backlash are the means of the group's meshes.
+
     Parameters
     ----------
     mapped : MappedMachine
@@ -57,7 +59,7 @@ def split_machine(mapped: MappedMachine, group: LoadGroup) -> SplitMachine | Non
     Returns
     -------
     SplitMachine or None
-        None without idlers.
+        None without idlers, without inputs, or where no mesh of the group's pinion is loaded.
     """
     layout, idlers = mapped.machine.layout, groups_of_kind(mapped.machine, GroupKind.IDLERS)
     inputs = sum(pinion.role is Role.INPUT for pinion in layout.pinions)
@@ -82,13 +84,14 @@ def predicted_factor(
     Parameters
     ----------
     mapped : MappedMachine
-        Its stiffnesses, backlash and torques count; nothing of its statics but the stiffness of its meshes.
+        Its stiffnesses, backlash and torques count; nothing of its statics but the stiffness of its meshes
+        and, for an input, its load.
     group : LoadGroup
         Meshes of an input, or idlers.
     options : MapOptions
-        Deviations and samples.
+        Deviations of the errors, number of samples and seed.
     freedom : float or None
-        `plane_freedom`, where it is not that of the bearings.
+        `plane_freedom` (0..1) to use instead of that of the gears' bearings; None: that of the bearings.
 
     Returns
     -------
@@ -110,7 +113,9 @@ def predicted_factor(
 
 
 def _closed_load(mapped: MappedMachine, group: LoadGroup, even: float) -> float:
-    """Load of all idlers by the loop formula, N; their nominal load without inputs."""
+    """Return the load of all idlers together by the loop formula, N; `even`, their nominal load (N),
+    without inputs.
+    """
     inputs = groups_of_kind(mapped.machine, GroupKind.INPUTS)
     form = split_machine(mapped, inputs[0]) if inputs else None
     if form is None:
@@ -120,7 +125,7 @@ def _closed_load(mapped: MappedMachine, group: LoadGroup, even: float) -> float:
 
 
 def departures(machine: Machine) -> list[str]:
-    """Say why the closed form of idlers may not hold.
+    """List in words why the closed form of idlers may not hold for a machine.
 
     Parameters
     ----------
@@ -155,5 +160,5 @@ def departures(machine: Machine) -> list[str]:
 
 
 def _spread(values: Array) -> float:
-    """Return the relative difference of the largest and the smallest value."""
+    """Return (largest - smallest value) over the largest magnitude, dimensionless; 0 for no values."""
     return float(np.ptp(values) / np.abs(values).max()) if np.size(values) else 0.0

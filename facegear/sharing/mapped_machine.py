@@ -31,32 +31,39 @@ class MappedMachine:
 
     @cached_property
     def machine_at_rest(self) -> Machine:
-        """The machine for static questions alone."""
+        """The machine reduced to what static questions need (`facegear.machine.static_gears.at_rest`)."""
         return at_rest(self.machine)
 
     @cached_property
     def base(self) -> Equilibria:
-        """Equilibrium without drawn errors. Raises NotConverged."""
+        """Equilibrium (one sample) with the machine's own errors but without drawn ones. Raises
+        NotConverged.
+        """
         return self.equilibria(np.zeros((1, len(self.machine.layout.pinions))))
 
     @cached_property
     def forces(self) -> Array:
-        """Load of each mesh without drawn errors, (meshes,), N."""
+        """Load magnitude (meshes,), N, of each mesh in `base`, with the machine's own errors alone."""
         return np.abs(significant_forces(self.base.forces)[0])
 
     @cached_property
     def mesh_springs(self) -> Array:
-        """Stiffness of each mesh under its load, (meshes,), N/m; 0 where it carries nothing."""
+        """Tangent stiffness (meshes,), N/m, of each mesh under its load at rest, both flanks added; 0 if
+        unloaded.
+        """
         springs = np.diagonal(pressed_springs(self.machine_at_rest)[1])
         return np.asarray(springs.reshape(2, -1).sum(axis=0))
 
     def equilibria(self, late: Array) -> Equilibria:
-        """Equilibrium for pinions whose upper meshes are late.
+        """Solve static equilibria of samples in which the upper meshes of the pinions are late.
+
+        Stiffness and errors of the flanks are means over the mesh cycle.
 
         Parameters
         ----------
         late : (samples, pinions) array
-            Lateness beside the machine's own errors, m along the line of action; positive unloads the mesh.
+            Lateness beside the machine's own errors, m along the line of action; positive unloads the
+            drive flank of the pinion's upper mesh, and loads its back flank.
 
         Returns
         -------
@@ -74,26 +81,26 @@ class MappedMachine:
         )
 
     def idler_forces(self, group: LoadGroup, late: Array) -> Array:
-        """Load of the meshes of a group of idlers whose paths are late.
+        """Compute the loads of the meshes of a group of idlers whose paths are late.
 
         Parameters
         ----------
         group : LoadGroup
             Idlers.
         late : (samples, paths) array
-            Lateness of each path, m.
+            Lateness of each path, m along the line of action; positive unloads the path.
 
         Returns
         -------
         (samples, paths) array
-            N. Raises NotConverged.
+            Magnitudes, N, in the order of `group.meshes`. Raises NotConverged.
         """
         pinions, every = self.pinions(group), np.zeros((len(late), len(self.machine.layout.pinions)))
         every[:, pinions] = late * self.working_flank(group)
         return np.abs(significant_forces(self.equilibria(every).forces)[:, list(group.meshes)])
 
     def working_flank(self, group: LoadGroup) -> Array:
-        """Return on which flank the upper mesh of each path works.
+        """Tell on which flank the upper mesh of each path is loaded without drawn errors.
 
         Parameters
         ----------
@@ -103,14 +110,14 @@ class MappedMachine:
         Returns
         -------
         (paths,) array
-            Dimensionless: 1 on the drive flank, -1 on the back flank.
+            Sign, dimensionless: 1 on the drive flank or without load, -1 on the back flank.
         """
         layout, forces = self.machine.layout, self.base.forces[0]
         upper = [layout.mesh_index(i, Side.UPPER) for i in self.pinions(group)]
         return np.where(forces[upper] < 0.0, -1.0, 1.0)
 
     def pinions(self, group: LoadGroup) -> Integers:
-        """Return the numbers of the pinions of a group's meshes.
+        """Return the index in `layout.pinions` of the pinion of each mesh of a group.
 
         Parameters
         ----------
@@ -120,7 +127,7 @@ class MappedMachine:
         Returns
         -------
         (meshes,) array of int
-            In the order of the meshes, dimensionless.
+            In the order of `group.meshes`, dimensionless.
         """
         return np.array([self.machine.layout.meshes[mesh][0] for mesh in group.meshes])
 
@@ -155,7 +162,8 @@ class MappedMachine:
         return float(self.forces[list(group.meshes)].sum())
 
     def factor(self, group: LoadGroup) -> float:
-        """Return K_gamma of a group without drawn errors.
+        """Compute the largest K_gamma of a group's meshes: load without drawn errors over nominal even
+        share.
 
         Parameters
         ----------
@@ -165,12 +173,12 @@ class MappedMachine:
         Returns
         -------
         float
-            The number, dimensionless.
+            Mesh load factor, dimensionless; nan without an even share.
         """
         return float((self.forces[list(group.meshes)] / self.even(group)).max())
 
     def group_spring(self, group: LoadGroup) -> float:
-        """Return the mean stiffness of the loaded meshes of the pinions of a group.
+        """Return the mean stiffness of all loaded meshes of the pinions of a group, on both gears.
 
         Parameters
         ----------
@@ -189,7 +197,7 @@ class MappedMachine:
         return float(springs[has_load].mean()) if has_load.any() else float("nan")
 
     def bearing(self, group: LoadGroup) -> float:
-        """Return the mean tangential stiffness of the bearings of the pinions of a group.
+        """Return the mean tangential (x) stiffness of the bearings of the pinions of a group.
 
         Parameters
         ----------
@@ -205,7 +213,9 @@ class MappedMachine:
         return float(np.mean([body.bearing[0] for body in bodies]))
 
     def path_stiffness(self, group: LoadGroup) -> float:
-        """Return the stiffness k_e of a path through an idler.
+        """Return the stiffness k_e of a path through an idler: two meshes and the bearing in series.
+
+        It is `SplitMachine.path_stiffness` with the group's mean mesh and bearing stiffness.
 
         Parameters
         ----------
@@ -215,18 +225,20 @@ class MappedMachine:
         Returns
         -------
         float
-            N/m: two meshes and the bearing in series.
+            N/m along the line of action.
         """
         form = SplitMachine(1, 1, 1.0, self.group_spring(group), 0.0, self.machine.layout.pressure_angle)
         return form.path_stiffness(self.bearing(group))
 
     def freedom(self, group: LoadGroup) -> float:
-        """Return `plane_freedom` of the face gears as they are held.
+        """Compute `plane_freedom` of the face gears on their own bearings: 0 fixed, 1 one of them floats.
+
+        The radial stiffness of a gear's bearing is the mean of x and y.
 
         Parameters
         ----------
         group : LoadGroup
-            Idlers.
+            Idlers, the paths between both gears.
 
         Returns
         -------
@@ -239,7 +251,8 @@ class MappedMachine:
         return plane_freedom(len(group.meshes), stiffness, (bearings[0], bearings[1]), layout.pressure_angle)
 
     def backlash(self, group: LoadGroup) -> float:
-        """Return the mean backlash 2 b of the meshes of a group.
+        """Return the mean normal backlash of the meshes of a group, from flank to flank (twice the half
+        backlash).
 
         Parameters
         ----------
@@ -254,14 +267,16 @@ class MappedMachine:
         return float(2.0 * self.machine.half_backlash[list(group.meshes)].mean())
 
     def number(self, group: LoadGroup, deviation: float) -> float:
-        """Number that decides the sharing of a group, dimensionless.
+        """Compute the dimensionless number that decides the sharing of a group, the abscissa of the
+        load-sharing map.
 
         Parameters
         ----------
         group : LoadGroup
-            Idlers: k_e times `deviation` over W. Meshes of an input: 2 b k over its load.
+            Idlers: k_e times `deviation` over the load W. Meshes of an input: backlash times mesh
+            stiffness over W.
         deviation : float
-            Standard deviation of the lateness of a path, m.
+            Standard deviation of the lateness of a path, m; not used for inputs.
 
         Returns
         -------

@@ -19,19 +19,19 @@ JUDGED_LEVEL = 95.0
 
 
 def draws(group: LoadGroup, options: MapOptions) -> Array:
-    """Draw the lateness of the paths of a group.
+    """Draw the lateness of the paths of a group from a standard normal distribution.
 
     Parameters
     ----------
     group : LoadGroup
-        Idlers.
+        Idlers; only the number of their meshes counts.
     options : MapOptions
-        Number of samples and seed.
+        Number of samples and seed, so that equal options give equal draws.
 
     Returns
     -------
     (samples, paths) array
-        Lateness over its standard deviation, dimensionless.
+        Independent lateness over its standard deviation, dimensionless.
     """
     random = np.random.default_rng(options.seed)
     return random.standard_normal((options.samples, len(group.meshes)))
@@ -40,23 +40,24 @@ def draws(group: LoadGroup, options: MapOptions) -> Array:
 def group_levels(
     mapped: MappedMachine, group: LoadGroup, deviation: float, options: MapOptions
 ) -> tuple[float, ...]:
-    """Return percentiles of K_gamma of a group by statics.
+    """Compute percentiles of K_gamma of a group over drawn errors, each sample by static equilibrium.
 
     Parameters
     ----------
     mapped : MappedMachine
         The machine.
     group : LoadGroup
-        Meshes of an input, or idlers.
+        Meshes of an input, or idlers. Only idlers' paths get drawn errors.
     deviation : float
-        Standard deviation of the lateness of a path, m.
+        Standard deviation of the lateness of a path, m along the line of action.
     options : MapOptions
-        Samples.
+        Number of samples and seed.
 
     Returns
     -------
     tuple of float
-        One for each of LEVELS, dimensionless. Raises NotConverged.
+        Percentiles LEVELS (50, 95, 99 %) of the hardest loaded mesh, dimensionless; an input's one value is
+        repeated. Raises NotConverged.
     """
     if group.kind is GroupKind.INPUTS:
         return (mapped.factor(group),) * len(LEVELS)
@@ -65,7 +66,7 @@ def group_levels(
 
 
 def levels(factors: Array) -> tuple[float, ...]:
-    """Return the percentiles LEVELS of drawn values.
+    """Return the percentiles LEVELS (50, 95, 99 %) of drawn values.
 
     Parameters
     ----------
@@ -75,13 +76,13 @@ def levels(factors: Array) -> tuple[float, ...]:
     Returns
     -------
     tuple of float
-        In the same unit.
+        Three percentiles in the same unit.
     """
     return tuple(float(value) for value in np.percentile(factors, LEVELS))
 
 
 def judged_factor(mapped: MappedMachine, group: LoadGroup, options: MapOptions) -> float:
-    """Return K_gamma of a group by statics, as advice judges it.
+    """Compute the K_gamma of a group, by statics, that advice compares before and after a change.
 
     Parameters
     ----------
@@ -90,12 +91,13 @@ def judged_factor(mapped: MappedMachine, group: LoadGroup, options: MapOptions) 
     group : LoadGroup
         Meshes of an input, or idlers.
     options : MapOptions
-        Deviations and samples.
+        Deviations, number of samples and seed.
 
     Returns
     -------
     float
-        The percentile JUDGED_LEVEL of idlers, the value of an input; dimensionless. Raises NotConverged.
+        For idlers the percentile JUDGED_LEVEL (95 %) over drawn errors, for an input its value without
+        them; dimensionless. Raises NotConverged.
     """
     deviation = options.deviation(mapped.machine.layout.pressure_angle)
     return group_levels(mapped, group, deviation, options)[LEVELS.index(JUDGED_LEVEL)]
@@ -164,19 +166,19 @@ def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: floa
 
 
 def with_half_backlash(machine: Machine, half: float) -> Machine:
-    """Return a machine with the same half backlash at every mesh.
+    """Return a machine with the same half backlash at every mesh, whatever it was.
 
     Parameters
     ----------
     machine : Machine
-        With backlash as it is.
+        Its half backlashes are replaced.
     half : float
-        Half the backlash from flank to flank, m.
+        Half the normal backlash from flank to flank, m.
 
     Returns
     -------
     Machine
-        With this backlash.
+        A changed copy.
     """
     return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
 
@@ -187,20 +189,22 @@ def with_scaled_backlash(machine: Machine, factor: float) -> Machine:
     Parameters
     ----------
     machine : Machine
-        With backlash as it is.
+        Its half backlashes are multiplied.
     factor : float
-        On the backlash, dimensionless.
+        Factor on the backlash, dimensionless.
 
     Returns
     -------
     Machine
-        With this backlash.
+        A changed copy.
     """
     return replace(machine, half_backlash=factor * machine.half_backlash)
 
 
 def _with_layout(machine: Machine, layout: Layout) -> Machine:
-    """The machine with the same bodies on other bearings."""
+    """Return the machine with another layout (other bearings), set in its drive line and elastic gears,
+    too.
+    """
     line, bodies = machine.drive_line, machine.bodies
     return replace(
         machine,

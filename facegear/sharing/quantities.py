@@ -87,18 +87,21 @@ class Tally(NamedTuple):
 
     @property
     def largest_load(self) -> Array:
-        """Largest load of each mesh (M,), N."""
+        """Largest load (M,), N, of each mesh: the larger of its two flanks' largest forces."""
         drive, back = np.split(self.largest, 2)
         return np.maximum(drive, back)
 
 
 def tally(flank_forces: Array, per_cycle: int, groups: tuple[LoadGroup, ...]) -> Tally:
-    """Compute largest and mean loads of the flanks, and how long flanks are open or reversed, over a motion.
+    """Compute mean and largest loads of the flanks, coefficients of groups, and times open or reversed.
+
+    The motion is K instants, whole mesh cycles of `per_cycle` instants each. A compiled kernel does it in
+    one pass.
 
     Parameters
     ----------
     flank_forces : (F, K) array
-        Forces of the flanks, none negative, N.
+        Forces of the F = 2 M flanks, drive flanks of all meshes first, none negative, N.
     per_cycle : int
         Number of instants in each mesh cycle.
     groups : tuple of LoadGroup
@@ -107,7 +110,7 @@ def tally(flank_forces: Array, per_cycle: int, groups: tuple[LoadGroup, ...]) ->
     Returns
     -------
     Tally
-        Forces in N, fractions of the time.
+        Forces in N, coefficients, and fractions of the time.
     """
     starts = np.cumsum([0, *(len(group.meshes) for group in groups)])
     members = np.array([mesh for group in groups for mesh in group.meshes], dtype=np.int64)
@@ -136,20 +139,24 @@ MachineQuantities = tuple[dict[str, float], FlankLoads]
 
 
 def quasi_static_quantities(machine: Machine, cycles: int) -> MachineQuantities:
-    """Compute the quantities of mesh cycles spread over the hunting cycle; the largest loads also of its
-    hardest cycles.
+    """Compute the quantities of a machine from static equilibria of mesh cycles spread over the hunting
+    cycle.
+
+    The hardest mesh cycles, found by a linear law (`hardest_cycles`), are added for the largest loads and
+    K_gamma; means and fractions of time are those of the spread cycles alone.
 
     Parameters
     ----------
     machine : Machine
         With geometric meshes.
     cycles : int
-        Number of mesh cycles.
+        Least number of mesh cycles to spread, or all if the hunting cycle is shorter.
 
     Returns
     -------
     MachineQuantities
-        Values in the units of `quantity_names`, forces in N.
+        Dictionary of the names of `quantity_names(dynamic=False)`, with PAST_LAW if the machine has
+        load-dependent laws; and mean and largest force (N) of each flank.
 
     Raises
     ------
@@ -184,7 +191,7 @@ def dynamic_quantities(
     options: SharingOptions,
     guide: Guide | None = None,
 ) -> MachineQuantities:
-    """Compute the quantities of the motion reached from static equilibrium.
+    """Compute the quantities of a machine from its motion at a speed, reached from static equilibrium.
 
     Parameters
     ----------
@@ -195,14 +202,15 @@ def dynamic_quantities(
     settings : Settings
         Settings of the integration.
     options : SharingOptions
-        Cycles and samples.
+        Mesh cycles and samples of a cycle; they replace window and samples of `settings`.
     guide : Guide or None
-        Orbit of a similar machine, from which the search starts.
+        Orbit of a similar machine, from which the search starts; None: from static equilibrium alone.
 
     Returns
     -------
     MachineQuantities
-        Values in the units of `quantity_names`, forces in N.
+        Dictionary of the names of `quantity_names(dynamic=True)`, with PAST_LAW if the machine has
+        load-dependent laws; and mean and largest force (N) of each flank.
 
     Raises
     ------
@@ -230,7 +238,8 @@ def dynamic_quantities(
 
 
 def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions) -> Guide | None:
-    """Return the orbit that a machine comes to from static equilibrium, as a guide for similar machines.
+    """Compute the periodic orbit that a machine reaches from static equilibrium, as a guide for similar
+    machines.
 
     Parameters
     ----------
@@ -241,12 +250,13 @@ def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: Sh
     settings : Settings
         Settings of the integration.
     options : SharingOptions
-        Cycles and samples.
+        Mesh cycles and samples of a cycle.
 
     Returns
     -------
     Guide or None
-        None where the motion is no orbit, or where the integration fails.
+        Argument `guide` of `dynamic_quantities`. None where the motion is not periodic, or where the
+        integration fails.
     """
     try:
         response = measured_motion(build_model(machine), speed_rpm, settings, options).response
@@ -269,7 +279,10 @@ class _SharingMeshes(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _meshes_that_share(machine: Machine, dynamic: bool) -> _SharingMeshes:
-    """Return groups, meshes and even shares of a machine; shared by equal machines."""
+    """Return groups, their meshes, even shares (N) and quantity names of a machine.
+
+    The machine is one without errors, so that all samples of a design find the same cached result.
+    """
     layout, groups = machine.layout, load_groups(machine.layout)
     sharing_meshes = [mesh for group in groups for mesh in group.meshes]
     return _SharingMeshes(groups, sharing_meshes, even_shares(machine), quantity_names(layout, dynamic))

@@ -22,22 +22,23 @@ from facegear.sharing.statistics import average, densely_sampled
 
 
 def static_forces(machine: Machine, positions: int) -> Array:
-    """Compute the elastic mesh forces with k and e frozen at evenly spaced positions.
+    """Compute the elastic mesh forces by static equilibrium at evenly spaced positions of one mesh cycle.
 
-    This is the limit of slow running: damping and inertia vanish, and who carries load follows from
-    stiffness, backlash and transmission error alone.
+    Stiffness and transmission error are frozen at each position. This is the limit of slow running:
+    damping and inertia vanish, and who carries load follows from stiffness, backlash and transmission
+    error alone.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     positions : int
-        Number of positions in the mesh cycle.
+        Number of positions in the mesh cycle, from its start.
 
     Returns
     -------
     (1, positions, meshes) array
-        N.
+        N, positive where the pinion drives; the first axis is the cycle.
 
     Raises
     ------
@@ -51,7 +52,7 @@ def static_forces(machine: Machine, positions: int) -> Array:
 
 
 def mean_equilibrium_forces(machine: Machine) -> Array:
-    """Compute the elastic mesh forces at mean stiffness without transmission error.
+    """Compute the elastic mesh forces by static equilibrium at mean stiffness, without transmission error.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def mean_equilibrium_forces(machine: Machine) -> Array:
     Returns
     -------
     (1, 1, meshes) array
-        N.
+        N, one cycle with one position.
 
     Raises
     ------
@@ -132,23 +133,23 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
 
 
 def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array:
-    """Compute the elastic mesh forces over one cycle at a low speed.
+    """Integrate the motion at a low speed and return the elastic mesh forces over its last mesh cycle.
 
-    A cycle lasts many decay times there, so a few cycles from equilibrium are settled.
+    A cycle lasts many decay times there, so SLOW_PERIODS cycles from equilibrium are settled.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     settings : Settings
-        Settings of the integration.
+        Settings of the integration; samples, dwell, settle, window and refine are replaced.
     speed_rpm : float
         Low speed of the pinions, rpm.
 
     Returns
     -------
     (1, positions, meshes) array
-        N.
+        N, at POSITIONS evenly spaced instants.
     """
     slow = replace(
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
@@ -159,7 +160,8 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array
 
 
 def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
-    """Compute mean and largest coefficient of each group over a range of speeds, the state carried upward.
+    """Tabulate mean and largest coefficient of each group over a range of speeds, each started from the
+    last state.
 
     Parameters
     ----------
@@ -168,12 +170,13 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
     settings : Settings
         Settings of the integration.
     options : SharingOptions
-        Range of speeds.
+        Range of speeds, mesh cycles averaged, and confidence level.
 
     Returns
     -------
     pd.DataFrame
-        One row a speed and group, columns SPEED_COLUMNS. No rows, and no run, where no meshes share a load.
+        One row a speed and group, columns SPEED_COLUMNS (`speed_rpm` of the pinions, `motion` the class
+        of motion). No rows, and no run, where no meshes share a load.
     """
     if not split_groups(machine.layout):
         return pd.DataFrame(columns=list(SPEED_COLUMNS))
@@ -209,7 +212,9 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
 
 
 def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, object]]:
-    """Return rows of load sharing of each group from forces."""
+    """Return one row (columns REFERENCE_COLUMNS) for each group that splits a load, from forces (cycles,
+    positions, meshes), N; `quantity` names the case.
+    """
     rows: list[dict[str, object]] = []
     for group in split_groups(machine.layout):
         group_forces = forces[..., group.meshes]

@@ -48,23 +48,23 @@ class Sharing:
 
     @property
     def response(self) -> SteadyState:
-        """The motion at its own samples."""
+        """The steady motion from which the averages are, at its own samples."""
         return self.motion.response
 
     @property
     def period(self) -> float:
-        """Mesh period in s."""
+        """Mesh period (one tooth engagement), s."""
         return 2.0 * np.pi / self.response.frequency
 
 
 def load_sharing(
     machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions, start: int = 0
 ) -> Sharing:
-    """Compute the load-sharing coefficients from one of the starting states, and how far the means move from
-    the others.
+    """Compute the load-sharing coefficients of a machine at a speed, and how far their means depend on
+    the start.
 
-    The averages belong to number `start`. With several stable motions, or an irregular one, the range over
-    the starts says how much that choice matters.
+    The averages belong to the motion from starting state number `start`. With several stable motions, or an
+    irregular one, the range of the means over all starts says how much that choice matters.
 
     Parameters
     ----------
@@ -75,14 +75,14 @@ def load_sharing(
     settings : Settings
         Settings of the integration; its window and samples are replaced by those of the options.
     options : SharingOptions
-        Cycles, samples, starts and confidence.
+        Cycles, samples, number of starts and confidence.
     start : int
         Index of the starting state that counts; 0 is static equilibrium.
 
     Returns
     -------
     Sharing
-        All groups of the machine.
+        Motion, results of all groups that split a load, and the class of motion from each start.
 
     Raises
     ------
@@ -98,23 +98,23 @@ def load_sharing_of_many(
     options: SharingOptions,
     start: int = 0,
 ) -> list[Sharing]:
-    """Compute load_sharing() of many machines; TOGETHER of them run side by side.
+    """Compute `load_sharing` of many machines, TOGETHER of them integrated side by side, which is faster.
 
     Parameters
     ----------
     cases : sequence of tuple
-        Machine or reduced model, and its speed in rpm.
+        Machine or reduced model, and its pinion speed in rpm.
     settings : Settings
         Settings of the integration; its window and samples are replaced by those of the options.
     options : SharingOptions
-        Cycles, samples, starts and confidence.
+        Cycles, samples, number of starts and confidence.
     start : int
         Index of the starting state that counts; 0 is static equilibrium.
 
     Returns
     -------
     list of Sharing
-        One entry for each case.
+        One entry for each case, in order.
 
     Raises
     ------
@@ -142,12 +142,17 @@ class _Run:
     options: SharingOptions
 
     def motion(self, state: State) -> RunPlan[SteadyState]:
-        """Plan the motion from which load sharing is averaged."""
+        """Return the plan (a generator of runs, see `facegear.motion.requests`) of the motion from
+        `state`, over which the averages are taken.
+        """
         return steady_motion(self.model, self.speed_rpm, self.settings, self.options, state)
 
     def motion_from_start(self, state: State, orbit: KnownOrbit | None) -> RunPlan[SteadyState | None]:
-        """Plan the motion from another start, coarsely sampled; it is None where it comes to the known
-        orbit.
+        """Plan the motion from another start, sampled at most SAMPLES times a cycle, of which only the
+        mean is used.
+
+        The plan's result is None where the motion comes to the given orbit, already known from the start
+        that counts.
         """
         coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
         window_settings = watched_for(coarse, self.options, FIRST_WINDOW)
@@ -161,12 +166,19 @@ class _Run:
         )
 
     def stored_orbit(self, response: SteadyState) -> KnownOrbit | None:
-        """Return the orbit of a response that other starts may come to."""
+        """Return the orbit of a periodic response for recognizing it in motions from other starts; None
+        if there is none.
+        """
         precision = self.settings.tolerance, self.settings.order
         return known_orbit(Integrator(response.system, response.frequency, *precision), response.orbit)
 
     def sharing(self, response: SteadyState, start_responses: list[SteadyState | None]) -> Sharing:
-        """Combine the motion that counts and the motions from the other starts."""
+        """Combine the motion that counts with the motions from the other starts into the result.
+
+        `start_responses` has an entry for each other start, None where it came to the same orbit. Means
+        of motions that are not on the same orbit widen the range over starts; those of an irregular
+        motion of the same class may widen the half-width.
+        """
         groups = split_groups(self.model.machine.layout)
         elsewhere = [
             response_of_start
@@ -192,7 +204,9 @@ class _Run:
 
 
 def _side_by_side(runs: Sequence[_Run], start: int) -> list[Sharing]:
-    """Run the motions from number `start` of the starting states, then the motions from the others."""
+    """Compute the sharing of each run: first the motions from starting state number `start`, all side by
+    side, then the motions from the other starting states.
+    """
     states = [starting_states(run.model, run.options, max(run.options.starts, start + 1)) for run in runs]
     responses = side_by_side(
         [run.motion(run_states[start]) for run, run_states in zip(runs, states, strict=True)]
@@ -215,7 +229,7 @@ def _side_by_side(runs: Sequence[_Run], start: int) -> list[Sharing]:
 def measured_motion(
     model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, guide: Guide | None = None
 ) -> DenseMotion:
-    """Compute the motion from static equilibrium, as load_sharing() measures it.
+    """Compute the motion from static equilibrium as `load_sharing` does, without other starts and averages.
 
     Parameters
     ----------
@@ -226,9 +240,9 @@ def measured_motion(
     settings : Settings
         Settings of the integration; its window and samples are replaced by those of the options.
     options : SharingOptions
-        Cycles and samples.
+        Mesh cycles and samples of a cycle.
     guide : Guide or None
-        Orbit of a similar machine, from which the search starts.
+        Orbit of a similar machine, from which the search starts; None: from static equilibrium alone.
 
     Returns
     -------
@@ -253,14 +267,14 @@ def starting_states(model: Model, options: SharingOptions, count: int) -> list[S
     model : Model
         Reduced model of the machine.
     options : SharingOptions
-        Size of the disturbance and seed of the random numbers.
+        Standard deviation (m) and seed of the disturbance: equal options give equal states.
     count : int
-        Number of states.
+        Number of states, at least 1.
 
     Returns
     -------
     list of State
-        SI units.
+        In the reduced coordinates of the model, SI units.
     """
     rest, random = static_start(model), np.random.default_rng(options.seed)
     return [rest, *(disturb(model, rest, options.spread, random) for _ in range(count - 1))]
@@ -274,7 +288,8 @@ def steady_motion(
     start: State,
     guide: Guide | None = None,
 ) -> RunPlan[SteadyState]:
-    """Plan the motion from a start; a motion that has not closed after its windows is measured as it is.
+    """Plan the search for the steady motion from a start; one that does not become periodic is measured
+    as it is.
 
     Parameters
     ----------
@@ -283,7 +298,7 @@ def steady_motion(
     speed_rpm : float
         Speed of the pinions, rpm.
     settings : Settings
-        Settings of the integration.
+        Settings of the integration; its longest run is limited to FIRST_WINDOW times the cycles averaged.
     options : SharingOptions
         Number of cycles that are averaged.
     start : State
@@ -294,7 +309,7 @@ def steady_motion(
     Returns
     -------
     RunPlan[SteadyState]
-        Steps that end with the response.
+        Generator of runs whose result is the response; `facegear.motion.requests.alone` runs it.
     """
     first_window = yield from start_run(
         model, speed_rpm, watched_for(settings, options, FIRST_WINDOW), start, guide
@@ -305,11 +320,12 @@ def steady_motion(
 def follow_first_window(
     model: Model, motion: StartedRun, settings: Settings, options: SharingOptions
 ) -> RunPlan[SteadyState]:
-    """Classify a motion after its first window; extend the window if it looks quasi-periodic.
+    """Continue a motion after its first window until it is classified; a quasi-periodic one gets a longer
+    window.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
     torus for a while. A class that must hold for good, as that of the response at the nominal speed,
-    therefore needs a longer window.
+    therefore needs a longer window: TORUS_WINDOW times the cycles averaged.
 
     Parameters
     ----------
@@ -325,7 +341,7 @@ def follow_first_window(
     Returns
     -------
     RunPlan[SteadyState]
-        Steps that end with the response.
+        Generator of runs whose result is the response; its `periods_run` counts both windows.
     """
     state = yield from motion.follow()
     if state.motion is not Motion.QUASI_PERIODIC:
@@ -336,27 +352,29 @@ def follow_first_window(
 
 
 def watched_for(settings: Settings, options: SharingOptions, times: int) -> Settings:
-    """Return settings whose longest run is a multiple of the cycles averaged, and no longer than before.
+    """Return settings whose longest run is `times` the cycles averaged, and no longer than it was.
 
     Parameters
     ----------
     settings : Settings
         Settings of the integration.
     options : SharingOptions
-        Number of cycles that are averaged.
+        Number of mesh cycles that are averaged.
     times : int
         Factor on that number, dimensionless.
 
     Returns
     -------
     Settings
-        The same settings with another `settle`.
+        The same settings with `settle` (mesh periods) reduced where it was larger.
     """
     return replace(settings, settle=min(settings.settle, times * options.cycles))
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
-    """Return a start with normally distributed displacements added.
+    """Return a starting state with normally distributed displacements of the bodies added; speeds stay.
+
+    The displacements are projected on the modes of the reduced model.
 
     Parameters
     ----------
@@ -372,7 +390,7 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
     Returns
     -------
     State
-        SI units.
+        Reduced coordinates, SI units.
     """
     linear = model.machine.linear
     displacements = spread * random.normal(size=linear.size) / linear.lengths

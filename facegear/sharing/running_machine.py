@@ -27,14 +27,15 @@ class Running(LoadHistory):
 
     @cached_property
     def largest_loads(self) -> Array:
-        """Largest load of each mesh (meshes,), N, located between the positions."""
+        """Largest load (meshes,), N, of each mesh, interpolated between the instants."""
         return located_extremes(self.loads, False)[1]
 
 
 def running(
     machine: Machine, speed_rpm: float, cycles: int, positions: int = 64, settings: Settings | None = None
 ) -> Running:
-    """Follow the first mesh cycles of the hunting cycle at a speed.
+    """Follow the motion at a speed through the first mesh cycles of the hunting cycle, with all errors
+    that turn.
 
     Parameters
     ----------
@@ -43,16 +44,16 @@ def running(
     speed_rpm : float
         Speed of the pinions, rpm.
     cycles : int
-        Number of mesh cycles.
+        Number of mesh cycles returned; the run-up (`lead`) before them is found and left out.
     positions : int
         Number of instants in each mesh cycle.
     settings : Settings or None
-        Settings of the integration.
+        Settings of the integration; None: its defaults.
 
     Returns
     -------
     Running
-        Forces in N.
+        Flank forces (N) at K = cycles x positions instants.
 
     Raises
     ------
@@ -72,7 +73,7 @@ def running(
 
 
 def running_mesh_table(run: Running) -> pd.DataFrame:
-    """Return the table of the machine at rest with the dynamic factor K_v of every mesh.
+    """Tabulate loads and states of each mesh while running: `mesh_table` with the dynamic factor K_v added.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def running_mesh_table(run: Running) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a mesh, columns of `mesh_table` and k_v.
+        One row a mesh, columns MESH_COLUMNS of `facegear.sharing.hunting`, with k_v after k_gamma.
     """
     table = mesh_table(run)
     table.insert(table.columns.get_loc("k_gamma") + 1, "k_v", run.dynamic_factors)
@@ -97,20 +98,20 @@ RUNNING_COLUMNS = (
 
 
 def running_table(run: Running, still: HuntingCycle) -> pd.DataFrame:
-    """Compare the load sharing of the running machine with the quasi-static one.
+    """Compare the load sharing of the running machine with the quasi-static one, group by group.
 
-    K_gamma is given while running, quasi-static over the same cycles and over all. k_v: dynamic factor of the
-    path whose K_gamma is listed. cut: relative error of the quasi-static K_gamma by following a part of the
-    hunting cycle only; sampling: relative change of the running K_gamma K_v by every second sample alone.
-    memory: difference between two starts, over the largest flank force. torque_n_m: largest torque on a
-    pinion.
+    K_gamma (largest of the group) is given while running, quasi-static over the same cycles and over all.
+    k_v: dynamic factor of the mesh whose K_gamma is listed. cut: relative error of the quasi-static
+    K_gamma by following a part of the hunting cycle only; sampling: relative change of the running
+    K_gamma K_v by every second sample alone. memory: difference between two starts, over the largest
+    flank force. torque_n_m: largest torque on a pinion. lead_cycles: mesh cycles run before.
 
     Parameters
     ----------
     run : Running
-        The motion.
+        The motion over the first mesh cycles of the hunting cycle.
     still : HuntingCycle
-        The whole hunting cycle at rest.
+        The whole hunting cycle at rest, quasi-static.
 
     Returns
     -------
@@ -150,7 +151,7 @@ def running_table(run: Running, still: HuntingCycle) -> pd.DataFrame:
 
 
 def _dynamic_factor(history: LoadHistory, group: LoadGroup) -> float:
-    """Return K_v of the path with the largest K_gamma, nan where no path has one."""
+    """Return K_v of the mesh with the group's largest K_gamma, dimensionless; nan where no mesh has one."""
     factors = history.path_factors(group)
     if not np.isfinite(factors).any():
         return float("nan")

@@ -28,14 +28,14 @@ BEARINGS = np.geomspace(1e6, 1e11, 26)
 
 
 def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
-    """Return the largest K_gamma of all paths, or of the groups of one kind.
+    """Return the largest K_gamma of all meshes that share a load, or of those in the groups of one kind.
 
     Parameters
     ----------
     run : HuntingCycle
         The quasi-static motion.
     kind : str or None
-        Value of a GroupKind; None for all groups.
+        "inputs", "idlers" or "independent" (value of a GroupKind); None for all groups.
 
     Returns
     -------
@@ -84,7 +84,11 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
 
 
 def _coarser(base: HuntingCycle) -> HuntingCycle:
-    """Return the hunting cycle at fewer positions of each mesh cycle, evenly spaced."""
+    """Thin the hunting cycle to POSITIONS evenly spaced positions of each mesh cycle, if their number
+    allows.
+
+    The equilibria `at_rest` are left as they are.
+    """
     every = base.positions // POSITIONS
     if every < 2 or base.positions % every:
         return base
@@ -93,10 +97,11 @@ def _coarser(base: HuntingCycle) -> HuntingCycle:
 
 
 def _may_be_hardest(base: HuntingCycle) -> Mask:
-    """Whether each mesh cycle of the base may hold the largest K_gamma of some group after a change of STEP.
+    """Tell for each mesh cycle of the base whether it may hold a group's largest K_gamma after a change
+    of STEP.
 
-    Forces of springs that only push change by no more than the stiffest of them times the change of all gaps
-    together. Where no group has a K_gamma the first cycle stands for all.
+    Forces of springs that only push change by no more than the stiffest of them times the change of all
+    gaps together. Where no group has a K_gamma the first cycle stands for all. Booleans (mesh cycles,).
     """
     machine, even = base.machine, even_shares(base.machine)
     factors = np.nan_to_num(base.cycle_means / even, nan=-np.inf)
@@ -150,7 +155,11 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
 
 
 def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
-    """Yield the name of each error, the machine with less and more of it, and the difference (m)."""
+    """Yield for each error: its name, the machine with less of it, the machine with more, and the
+    difference (m).
+
+    The differences are 2 STEP, or less where a size cannot be negative.
+    """
     layout, errors, half = machine.layout, machine.imperfections, machine.half_backlash
     for mesh, name in enumerate(layout.mesh_names):
         yield f"error {name}", *_shift_error(machine, "error", mesh), 2 * STEP
@@ -174,10 +183,15 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
 
 
 def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
-    """Return the machine with one value of its errors smaller, and larger, by STEP."""
+    """Return two machines, in which one entry of an error array is smaller, and larger, by STEP (m).
+
+    `key` is a field of Imperfections ("error", "position" or "bearing_clearance"), `index` the entry of
+    its array.
+    """
     errors = machine.imperfections
 
     def machine_with(step: float) -> Machine:
+        """Return the machine with `step` (m) added to the entry."""
         values: dict[str, Any] = {key: _with_step(getattr(errors, key), index, step)}
         return replace(machine, imperfections=replace(errors, **values))
 
@@ -185,14 +199,17 @@ def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tu
 
 
 def _with_step(values: Array, index: int | tuple[int, int], step: float) -> Array:
-    """Return a copy of the values with a step added to one of them."""
+    """Return a copy of the array with `step` added to the entry at `index`, in the array's unit."""
     stepped = values.copy()
     stepped[index] += step
     return stepped
 
 
 def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
-    """Return imperfections with another runout amplitude of one body, m."""
+    """Return imperfections in which the runout of one body has another amplitude, m; its phase stays.
+
+    `key` is "pinion_runout" or "gear_runout", `body` the index in it.
+    """
     runouts: list[Runout] = list(getattr(base, key))
     runouts[body] = replace(runouts[body], amplitude=amplitude)
     values: dict[str, Any] = {key: tuple(runouts)}
@@ -200,7 +217,11 @@ def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> 
 
 
 def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
-    """Return the machine with the given kinematics, with its mesh errors, backlash and stiffness."""
+    """Return a simplified machine with other kinematics, for the bearing scan.
+
+    It keeps mesh errors, backlash, stiffness and balanced torques, and loses tilt of the gears, drive
+    line and all other errors. Elastic bodies stay only if the kinematics do.
+    """
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
     radius = kinematics.gear_radius(conjugate, layout.pressure_angle)
@@ -223,7 +244,9 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:
-    """Return the machine with other bearings of these pinions, which replace their shafts, too."""
+    """Return the machine with a radial bearing stiffness (N/m) of the pinions of some roles; their shafts
+    are removed.
+    """
     machine_with_bearings = replace(machine, layout=_layout_with_bearings(machine.layout, roles, stiffness))
     if machine.drive_line is None:
         return machine_with_bearings
@@ -235,7 +258,9 @@ def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) 
 
 
 def _layout_with_bearings(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
-    """Return a layout with another bearing stiffness, N/m, of the pinions of some roles."""
+    """Return the layout with radial bearing stiffness x = y = `stiffness` (N/m) of the pinions of some
+    roles; the axial one stays.
+    """
     pinions = tuple(
         replace(
             pinion,

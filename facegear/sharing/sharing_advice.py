@@ -97,12 +97,18 @@ def advice(machine: Machine, options: MapOptions) -> pd.DataFrame:
 
 
 def _is_loaded(mapped: MappedMachine, group: LoadGroup) -> bool:
-    """Whether a group carries a load and its even shares are known."""
+    """Tell whether a group carries a load (without drawn errors) and all its meshes have a nominal even
+    share.
+    """
     return bool(np.isfinite(mapped.even(group)).all()) and mapped.load(group) > 0.0
 
 
 def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
-    """Yield changes of the machine to try: of bearings, floating gears and tolerances."""
+    """Yield the changes of the machine to try, each with its words, the changed machine and tolerances.
+
+    Bearings of inputs or idlers softer (SOFTER) and stiffer (STIFFER), face gears that float, half the
+    backlash, and half of each deviation of the idlers; those that do not apply are left out.
+    """
     mapped = MappedMachine(machine)
     idlers, inputs = groups_of_kind(machine, GroupKind.IDLERS), groups_of_kind(machine, GroupKind.INPUTS)
     for groups, roles, name in ((inputs, (Role.INPUT,), "inputs"), (idlers, IDLERS, "idlers")):

@@ -55,21 +55,22 @@ POINT_COLUMNS = ("torque_n_m", "group", "kind", "load_n", "number", *PERCENT_COL
 
 
 def floating_machine(machine: Machine, group: LoadGroup, floating: str) -> MappedMachine | None:
-    """Let face gears float; None where the meshes do not hold them there.
+    """Let face gears float in their planes; None where the meshes do not hold them there.
 
     Parameters
     ----------
     machine : Machine
         As it is given.
     group : LoadGroup
-        Whose paths have to stay loaded.
+        Meshes that must still carry load.
     floating : str
-        A key of FLOATING.
+        A key of FLOATING: "as given" (bearings as they are), "upper", "lower" or "both".
 
     Returns
     -------
     MappedMachine or None
-        The machine with the bearings of these gears gone in their planes.
+        The machine with nearly no radial bearing stiffness (`path_changes.FREE`) of these gears. None
+        where one moves by WANDERS or more, or the group is unloaded.
     """
     mapped = MappedMachine(floated(machine, FLOATING[floating]))
     if not FLOATING[floating]:
@@ -81,22 +82,26 @@ def floating_machine(machine: Machine, group: LoadGroup, floating: str) -> Mappe
 
 
 def idler_curves(machine: Machine, options: MapOptions, largest: float) -> pd.DataFrame:
-    """Compute K_gamma of idlers over X for each way of floating the face gears.
+    """Tabulate K_gamma of idlers over X = k_e sigma / W, by statics and closed form, for each way of
+    floating the gears.
+
+    The same drawn errors, scaled, serve all points.
 
     Parameters
     ----------
     machine : Machine
         With geometric meshes and two face gears.
     options : MapOptions
-        Samples and points.
+        Number of samples and of points, and seed.
     largest : float
-        Largest X = k_e sigma / W, dimensionless.
+        Largest X, dimensionless; the points are spread evenly from 0.
 
     Returns
     -------
     pd.DataFrame
-        CURVE_COLUMNS: all_carry is the fraction of samples in which every path carries; closed_* is the
-        closed form, for the load that the group carries. Raises NotConverged.
+        One row a group, floating gear and X, columns CURVE_COLUMNS: all_carry is the fraction of samples
+        in which every path carries; k_gamma_p* are percentiles by statics, closed_p* those of the closed
+        form, for the load that the group carries. Raises NotConverged.
     """
     rows: list[tuple[object, ...]] = []
     for group in groups_of_kind(machine, GroupKind.IDLERS):
@@ -118,21 +123,23 @@ def idler_curves(machine: Machine, options: MapOptions, largest: float) -> pd.Da
 
 
 def input_curves(machine: Machine, options: MapOptions, largest: float) -> pd.DataFrame:
-    """Compute K_gamma of inputs over 2 b k / W for each stiffness of their bearings.
+    """Tabulate K_gamma of inputs over 2 b k / W (backlash times mesh stiffness over load), for some
+    bearing stiffnesses.
 
     Parameters
     ----------
     machine : Machine
         With geometric meshes and two face gears.
     options : MapOptions
-        Points and factors on the stiffness of the bearings.
+        Number of points, and factors on the stiffness of the inputs' bearings.
     largest : float
-        Largest 2 b k / W, dimensionless.
+        Largest 2 b k / W, dimensionless; the points are spread evenly from 0 and reached by the backlash.
 
     Returns
     -------
     pd.DataFrame
-        INPUT_COLUMNS; closed is the loop formula, nan without idlers. Raises NotConverged.
+        One row a factor, point and input, columns INPUT_COLUMNS; k_gamma is by statics, closed by the
+        loop formula, nan without idlers. Raises NotConverged.
     """
     rows: list[tuple[object, ...]] = []
     groups = [
@@ -155,20 +162,21 @@ def input_curves(machine: Machine, options: MapOptions, largest: float) -> pd.Da
 
 
 def map_points(machines: Sequence[tuple[float, Machine]], options: MapOptions) -> pd.DataFrame:
-    """Place the machine on the map at each of its torques.
+    """Place the machine on the load-sharing map at each of its torques: its number and its K_gamma by
+    statics.
 
     Parameters
     ----------
     machines : sequence of (float, Machine)
         Torque of an input, N m, and the machine under it.
     options : MapOptions
-        Deviations and samples.
+        Deviations of the errors, number of samples and seed.
 
     Returns
     -------
     pd.DataFrame
-        POINT_COLUMNS, one row a torque and group; an input has one value in all percentiles. Raises
-        NotConverged.
+        One row a torque and group that is loaded, columns POINT_COLUMNS; an input has one value in all
+        percentiles. Raises NotConverged.
     """
     rows: list[tuple[object, ...]] = []
     for torque, machine in machines:

@@ -42,7 +42,10 @@ def densely_sampled(response: SteadyState) -> DenseMotion:
 
 
 def same_orbit(first: SteadyState, second: SteadyState) -> bool:
-    """Whether two periodic motions are one, perhaps begun at another cycle of it.
+    """Tell whether two periodic motions are the same orbit, perhaps begun at another mesh cycle of it.
+
+    Their periods must be equal, and some mesh cycle's first position of `first` must be within
+    ORBIT_TOLERANCE times the length scale of the start of `second`, in all mesh deflections.
 
     Parameters
     ----------
@@ -95,25 +98,26 @@ def average(
     confidence: float = 0.95,
     periodic: bool = False,
 ) -> Average:
-    """Average a coefficient over many mesh cycles.
+    """Average a load-sharing coefficient over many mesh cycles, with a confidence interval from batch
+    means.
 
     A periodic motion given over its whole period has an exact mean: its half-width is zero.
 
     Parameters
     ----------
     coefficients : (cycles, samples) array
-        Dimensionless; NaN where undefined.
+        Dimensionless; NaN where undefined, as no mesh is loaded.
     lost_mask : (cycles, samples) array of bool
         Whether a path is without load.
     confidence : float
-        Confidence level from 0 to 1, dimensionless.
+        Confidence level from 0 to 1, dimensionless, of the mean and of the range of single cycles' means.
     periodic : bool
         Whether the samples are of a whole period.
 
     Returns
     -------
     Average
-        Dimensionless.
+        Dimensionless; all instants weigh the same.
     """
     is_undefined = np.isnan(coefficients)
     counts = (~is_undefined).sum(axis=-1)
@@ -188,7 +192,7 @@ def held_over_starts(first_average: Average, again: Sequence[float], confidence:
 
 
 def defined_mean(coefficients: Array) -> float:
-    """Return the mean over all defined instants, as `average` has it.
+    """Return the mean over all instants at which a coefficient is defined, equal to `average(...).mean`.
 
     Parameters
     ----------
@@ -207,9 +211,12 @@ def defined_mean(coefficients: Array) -> float:
 
 
 def _half_width(sums: Array, counts: Integers, confidence: float) -> float:
-    """Half-width of the mean's confidence interval from batch means; sums and counts are (cycles,).
+    """Compute the half-width of the mean's confidence interval from the means of at most BATCHES batches
+    of cycles.
 
-    Cycles follow each other and are not independent, batches of many cycles nearly are. NaN from one batch.
+    `sums` and `counts` (cycles,) are the sum of the coefficient and the number of defined instants in
+    each cycle. Successive cycles are not independent, batches of many cycles nearly are. NaN from fewer
+    than two batches.
     """
     batches = min(BATCHES, sums.size)
     means = [

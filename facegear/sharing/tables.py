@@ -46,9 +46,8 @@ SUMMARY_COLUMNS = (
 
 
 def curve_table(sharing: Sharing) -> pd.DataFrame:
-    """Return one mesh cycle of each group with the envelope over all cycles.
-
-    `lost_fraction` is the fraction of cycles with a path out of contact at that instant.
+    """Tabulate the load-sharing coefficient of each group over the first mesh cycle, with its range over
+    all cycles.
 
     Parameters
     ----------
@@ -58,14 +57,18 @@ def curve_table(sharing: Sharing) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        Columns CURVE_COLUMNS; empty cells where undefined. No rows where no meshes share a load.
+        One row a group and instant, columns CURVE_COLUMNS; empty cells where undefined. `lost_fraction`
+        is the fraction of cycles with a path out of contact at that instant. No rows where no meshes
+        share a load.
     """
     curves = [_curve(group, sharing.period) for group in sharing.groups]
     return pd.concat(curves, ignore_index=True) if curves else pd.DataFrame(columns=list(CURVE_COLUMNS))
 
 
 def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
-    """Return coefficient and envelope of a group over one mesh cycle as a table."""
+    """Return the rows of `curve_table` of one group, columns CURVE_COLUMNS; `period` is the mesh period,
+    s.
+    """
     samples = group.coefficients.shape[1]
     fraction = np.arange(samples) / samples
     is_undefined = np.isnan(group.coefficients)
@@ -85,7 +88,7 @@ def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
 
 
 def summary_table(sharing: Sharing) -> pd.DataFrame:
-    """Return the averages of each group.
+    """Tabulate mean, confidence half-width, extremes and range over the starts of each group's coefficient.
 
     Parameters
     ----------
@@ -95,7 +98,8 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a group, columns SUMMARY_COLUMNS.
+        One row a group, columns SUMMARY_COLUMNS: the fields of `Average`, and of the starting states the
+        range of means and the classes of motion.
     """
     motions = "; ".join(dict.fromkeys(sharing.motions))
     rows = []
@@ -125,18 +129,18 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
 
 
 def force_table(layout: Layout, mean: Array, largest: Array, motion: str) -> pd.DataFrame:
-    """Return mean and largest force of each mesh.
+    """Tabulate mean and largest force of each mesh, and its part of its group's load.
 
     Parameters
     ----------
     layout : Layout
         Bodies and meshes.
     mean : (M,) array
-        Mean magnitude over time of each mesh force, N.
+        Mean magnitude over time of each mesh force, N, in the order of `layout.meshes`.
     largest : (M,) array
         Largest magnitude of each mesh force, N.
     motion : str
-        Class of the motion.
+        Class of the motion in words, repeated in each row.
 
     Returns
     -------
