@@ -307,7 +307,6 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    # Imported here: only a pair with assembly errors needs compiled geometry to read its config.
     assembly = pair.assembly.model_dump()
     try:
         backlash = normal_backlash(pair_design(pair), tuple(beside))

@@ -251,7 +251,6 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
     """
     if values["transmission"] is None:
         return EarlyFindings((), (), ())
-    # Imported here: statics need machine code, which a pair without a machine does not.
     section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
     stiffness = Harmonics(np.zeros(1), np.array([_stiffness(values)]))
     no_error = Harmonics(np.zeros(1), np.zeros(1))

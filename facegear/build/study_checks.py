@@ -134,7 +134,6 @@ def check_search(
     ConfigError
         For the first key or goal that the machine does not have.
     """
-    # Imported here: only a search needs to know what machines are judged by.
     keys = [key for variable in section.variables for key in variable.sets]
     causes = tolerances.causes if section.robust and tolerances is not None else ()
     oiled = [key for cause in causes for key in cause.moves if key.startswith(LUBRICATION)]

@@ -47,7 +47,6 @@ def read_part(
         return columnar.read(path, tuple(holds))
     if path.suffix == ".json":
         return documents.read(path, tuple(holds))
-    # Imported here: pandas takes half a second, which jobs without a table would pay as well.
     return tables.read(path, tuple(holds), may_be_empty, text)
 
 

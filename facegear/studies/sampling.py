@@ -264,7 +264,6 @@ def population(section: Tolerances) -> "Population":
         Causes in the order of the config. A value of a cause times its gain is a change in the unit of
         the key.
     """
-    # Imported here: a config is read without scipy.stats.
     causes = tuple(
         Cause(
             cause.name,
