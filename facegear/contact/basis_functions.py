@@ -77,6 +77,9 @@ class FacingPairs:
     """
 
     def __init__(self, points: FacingPoints, starts: Integers, teeth: Integers) -> None:
+        """Keep points (q,) of all pairs, the first point of each pair with q last (p + 1,), and pair
+        numbers (p,).
+        """
         self.points, self.starts, self.teeth = points, starts, teeth
 
     @cached_property
@@ -114,6 +117,9 @@ class Cover:
     def __init__(
         self, min_area: Array, first: int, shape: tuple[int, int], flank_ends: tuple[float, float]
     ) -> None:
+        """Keep the smallest covered area of each basis function and their numbering; arguments as in the
+        class.
+        """
         self.min_area, self.first, self.shape, self.flank_ends = min_area, first, shape, flank_ends
 
     @cached_property
@@ -243,7 +249,8 @@ class Lattice:
         return np.asarray(at[:, 0] > self.flank_end)
 
     def interpolation_rows(self) -> Rows:
-        """Interpolate from the nodes before refinement to the refined ones.
+        """Return the interpolation of displacements from the c nodes before refinement to the n refined
+        ones.
 
         Returns
         -------
@@ -253,7 +260,7 @@ class Lattice:
         return _interpolation_rows(self)
 
     def loads(self, rows: Rows, at: Array, is_refined: bool = True) -> sp.csr_matrix:
-        """Spread unit forces on nodes.
+        """Distribute unit forces to nodes by the displacement's shape functions (consistent nodal loads).
 
         Parameters
         ----------
@@ -279,7 +286,10 @@ class Lattice:
 
 @lru_cache(maxsize=8)
 def _interpolation_rows(lattice: Lattice) -> Rows:
-    """Return the interpolation from coarse nodes as arrays of a sparse matrix for the kernel."""
+    """Return the interpolation from nodes before refinement to refined nodes as (pointer, index, weight).
+
+    Row i gives refined node i; the arrays are cached and only read.
+    """
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     matrix = interpolation(nodes, lattice.coarse, lattice.linear)
     matrix.eliminate_zeros()

@@ -107,12 +107,11 @@ def _ends(stiffness: Array) -> Array:
 
 
 def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
-    """Compute the stiffness that the other teeth add to the outer faces of a row of 1 + k teeth, k =
-    0..neighbours.
+    """Compute the stiffness that the other teeth add to the outer faces of a row of adjoining teeth.
 
-    The row is the loaded tooth with k further ones on one side. In a ring the rest is one chain that
-    joins the row's left and right face from outside. In a sector it is a chain at each face, whose far
-    end is free or clamped, and the loaded tooth is in the middle.
+    The row is the loaded tooth with k further ones on one side, k = 0..neighbours. In a ring the rest is
+    one chain that joins the row's left and right face from outside. In a sector it is a chain at each
+    face, whose far end is free or clamped, and the loaded tooth is in the middle.
 
     Parameters
     ----------
@@ -128,9 +127,8 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     Returns
     -------
     list of tuples of (2s, 2s) arrays
-        Entry k: for k further teeth to the left, and for k to the right, N/m; rows and columns belong to
-        the
-        left face of the row, then to its right face.
+        Entry k: for k further teeth to the left, and for k to the right, N/m. Rows and columns belong to
+        the left face of the row, then to its right face.
 
     Raises
     ------
