@@ -173,7 +173,9 @@ def gear_flank(
 
 
 def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
-    """Return the extent of a body's model.
+    """Return how many teeth of a body are modelled, from the plan's sector.
+
+    Without a number in the plan, all teeth are modelled, as a ring.
 
     Parameters
     ----------

@@ -83,10 +83,10 @@ def contact_ellipse(force: float, across: float, along: float, modulus: float) -
     """
 
     def parts(ratio: float) -> tuple[float, float]:
-        """Return K - E and E / (1 - m) - K for the ratio short over long semi-axis, K and E complete
-        elliptic integrals.
+        """Return K - E and E / ratio^2 - K for the ratio of short to long semi-axis.
 
-        Their ratio is that of the curvatures along and across.
+        K and E are complete elliptic integrals with m = 1 - ratio^2; the ratio of both results is along /
+        across.
         """
         square = ratio**2
         first, second = float(ellipkm1(square)), float(ellipe(1.0 - square))

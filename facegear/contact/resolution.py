@@ -35,7 +35,7 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
     point.
 
     Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear
-    flank.
+    flank: b = sqrt(4 q R / (pi E*)), q = torque / (2 base radius * narrower face).
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
-    """Return the number of elements along the face width, not rounded."""
+    """Return the number of unrefined elements along the face gear's width, not rounded."""
     return (design.face_gear.outer_radius - design.face_gear.inner_radius) / sizes.width
 
 

@@ -22,7 +22,8 @@ to 450 N m on the paper's pair, so that stress at small torques would be underes
 class Scale:
     """Rule by which values at the torques `torques` (t,), N m, rising, continue to others.
 
-    `exponents` (t + 1,): below the first torque, between each two neighbours, beyond the last.
+    `exponents` (t + 1,), dimensionless: power of the torque that values go with below the first torque,
+    between each two neighbours, and beyond the last.
     """
 
     torques: Array
@@ -142,7 +143,8 @@ class ContactPressure:
     def at(self, torque: float) -> float:
         """Interpolate the pressure at a torque.
 
-        A power of the torque between those solved and below them; beyond them its root, as in line contact.
+        A power of the torque between those solved and below them; beyond them its square root, as in line
+        contact.
 
         Parameters
         ----------

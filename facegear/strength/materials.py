@@ -217,7 +217,10 @@ class BendingLimits:
 
 @dataclass(frozen=True)
 class MaterialCard:
-    """A material with its elasticity and the limits its source gives; those it does not give are None."""
+    """A material with its elasticity and the limits its source gives; those it does not give are None.
+
+    `name`, `source` and `grade` are texts; `young_modulus` in Pa.
+    """
 
     name: str
     source: str

@@ -39,7 +39,8 @@ Factor = Callable[[Array], Array]
 class ContactPose:
     """Pose of the unloaded contact of a flank.
 
-    `path`: position along the pinion, m. `angle`: error of the shaft angle, rad.
+    `path`: radius of its path, the position along the pinion from the gear's axis, m. `angle`: error of
+    the shaft angle, rad.
     """
 
     path: float
@@ -47,9 +48,10 @@ class ContactPose:
 
 
 def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: ContactPose) -> Factor:
-    """Return the ratio of a quantity at one contact pose to that at another.
+    """Return the ratio of a quantity at one contact pose to that at another, as a function of torque.
 
-    Torques beyond the surface's count as its last, paths beyond its nodes as the nearest.
+    It is interpolated by a spline of logarithms over the surface's torques. Torques beyond the surface's
+    count as its last, paths beyond its nodes as the nearest.
 
     Parameters
     ----------
@@ -65,8 +67,8 @@ def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: C
     Returns
     -------
     Factor
-        Ratio at torques (n,) N m on the pinion; nan where the surface does not know the quantity, for example
-        pressure where edges carry all.
+        Ratio at torques (n,) N m on the pinion; nan where the surface does not know the quantity, for
+        example pressure where edges carry all.
     """
     if quantity not in surface.values:
         return lambda torque: np.full(torque.shape, np.nan)
@@ -227,7 +229,8 @@ class PosedContacts:
     ) -> LoadStresses:
         """Compute the stresses of every load of a rated flank in the loaded position of its bin.
 
-        Where several meshes load the flank, the largest stress counts.
+        The stress of the mesh's contact at rest is multiplied by `stress_ratio` from its pose to that of
+        the bin. Where several meshes load the flank, the largest stress counts.
 
         Parameters
         ----------
@@ -294,7 +297,8 @@ def duty_contact_poses(table: "pd.DataFrame") -> dict[tuple[int, str, str], Cont
     Parameters
     ----------
     table : DataFrame
-        Table of stage duty_poses.
+        Table of stage duty_poses: columns bin (from 1), mesh, flank, unloaded_path_mm and
+        shaft_angle_error_deg.
 
     Returns
     -------

@@ -183,7 +183,7 @@ def rate(
 
 
 def _stress_by_load(stress: Stress, duty: FlankDuty) -> Array:
-    """Return the stress (n,), Pa, at every load of the duty cycle."""
+    """Return the stress (n,), Pa, at the torque of each load of the flank."""
     return np.array([stress(torque) for torque in duty.torque])
 
 
@@ -197,7 +197,11 @@ def _rate_failure(
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
 ) -> FailureRating:
-    """Rate one failure by one method: damage, safety and life under the duty cycle."""
+    """Rate one flank against one failure (`bending` or `pitting`) by one method: damage, safety and life.
+
+    `by_load` (n,), Pa, is the stress of each load of `duty`; `allowed_stress`, Pa, that which may be
+    repeated for ever before life factors. Life is the time of the duty cycle over Miner's sum.
+    """
     harm = damage(by_load, duty.cycles, allowed_stress, limits.life)
     total = float(harm.sum())
     loads = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]

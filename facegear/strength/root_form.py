@@ -12,7 +12,8 @@ class SpurGear:
     """One external spur gear cut by a rack.
 
     module (m), pressure_angle (rad) of the rack, profile_shift in modules, tip_radius and width in m;
-    rack_addendum (h_fP) and rack_tip_radius (rho_fP) of the cutting rack in modules.
+    rack_addendum (h_fP, from the rack's datum line to its tip) and rack_tip_radius (rho_fP) of the
+    cutting rack in modules.
     """
 
     teeth: int
@@ -94,7 +95,10 @@ def relative_notch_sensitivity(slip_layer: float, notch_parameter: float) -> flo
 
 
 def relative_surface_factor(roughness: float) -> float:
-    """Return Y_R rel T of through-hardened and case-carburised steel.
+    """Return the relative surface factor Y_R rel T (ISO 6336-3) of through-hardened and case-carburised
+    steel.
+
+    It is 1.674 - 0.529 (Rz + 1)^0.1, Rz in um, and 1.12 below 1 um.
 
     Parameters
     ----------
@@ -128,6 +132,8 @@ def size_factor(module: float) -> float:
 
 def mean_stress_factor(ratio: float, mean_stress: float) -> float:
     """Return Y_M, the factor on the endurance limit where the stress swings (ISO 6336-3, annex B).
+
+    Y_M = 1 / (1 - R (1 - M) / (1 + M)) with R the ratio and M the mean stress ratio.
 
     Parameters
     ----------
@@ -220,12 +226,14 @@ def root_form(gear: SpurGear, load_radius: float) -> RootForm:
 def stress_correction(slenderness: float, notch_parameter: float) -> float:
     """Return the stress correction factor Y_S (ISO 6336-3), stated for 1 <= q_s < 8.
 
+    Y_S = (1.2 + 0.13 L) q_s^(1 / (1.21 + 2.3 / L)).
+
     Parameters
     ----------
     slenderness : float
         L = s_Fn / h_Fe, dimensionless.
     notch_parameter : float
-        q_s, dimensionless.
+        q_s = s_Fn / (2 rho_F), dimensionless.
 
     Returns
     -------
@@ -237,7 +245,12 @@ def stress_correction(slenderness: float, notch_parameter: float) -> float:
 
 
 def _tangent_angle(g: float, h: float, teeth: int) -> float:
-    """Solve for the angle of the critical section's tangent, rad, by fixed-point iteration."""
+    """Solve theta = 2 g tan(theta) / teeth - h of ISO 6336-3 for the angle theta (rad), by fixed-point
+    iteration.
+
+    g: distance of the rack's tip rounding from the pitch line, in modules; h: rad. Raise NotConverged
+    after ITERATIONS.
+    """
     angle = pi / 6.0
     for _ in range(ITERATIONS):
         next_angle = 2.0 * g / teeth * tan(angle) - h

@@ -80,14 +80,14 @@ class RatingRequest:
 
 
 def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> float:
-    """Solve for the factor on all stresses at which Miner's sum over the bins reaches 1.
+    """Solve for the factor on all stresses at which Miner's sum over all loads reaches 1, by bisection.
 
     Parameters
     ----------
     stress : (n,) array
-        Stress, Pa.
+        Stress of each load, Pa.
     cycles : (n,) array
-        Number of cycles.
+        Number of cycles of each load.
     allowed_stress : float
         Stress that may be repeated for ever before life factors, Pa.
     life : Life
@@ -187,7 +187,7 @@ def permissible_bending(
 def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
     """Return the root section of the pinion for a load at the outer point of single contact.
 
-    The gear is taken as a rack.
+    The gear is taken as a rack: the roll angle there is that of the tip less (contact_ratio - 1) pitches.
 
     Parameters
     ----------
@@ -236,9 +236,11 @@ def standard_bending(design: PairDesign, form: RootForm) -> Stress:
 
 
 def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingRequest) -> dict[str, Stress]:
-    """Return the contact stress of the standard on each body, the gear's flank taken as a rack's.
+    """Return the contact stress of ISO 6336-2 on each body, the gear's flank taken as a rack's.
 
-    The pinion is judged at its inner point of single contact where that is worse than the pitch point.
+    Z_E Z_epsilon sqrt(F / (b R)), F the force along the line of action, b the narrower face and R the
+    pinion's radius of curvature at the pitch point. The pinion is judged at its inner point of single
+    contact where that is worse.
 
     Parameters
     ----------
@@ -252,7 +254,7 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
     Returns
     -------
     dict[str, Stress]
-        Stress (Pa) at a torque (N m) on the pinion, by body.
+        Stress (Pa) at a torque (N m) on the pinion, by body (`pinion`, `face_gear`).
 
     Raises
     ------
@@ -266,6 +268,9 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
     factor = elasticity_factor(first, second) * contact_ratio_factor(contact_ratio)
 
     def at(roll: float) -> Stress:
+        """Return the function from torque (N m) to contact stress (Pa) at a roll angle (rad) of the
+        pinion.
+        """
         return lambda torque: factor * sqrt(torque / (base * _width(design)) / (base * roll))
 
     if inner <= 0.0:
