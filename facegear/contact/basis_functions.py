@@ -84,7 +84,7 @@ class FacingPairs:
 
     @cached_property
     def kernel(self) -> kernels.FacingPoints:
-        """The points as the compiled kernels take them."""
+        """The points as an object of the compiled kernels, made once."""
         points, contiguous = self.points, np.ascontiguousarray
         return kernels.FacingPoints(
             contiguous(points.gap),
@@ -124,7 +124,7 @@ class Cover:
 
     @cached_property
     def kernel(self) -> kernels.Cover:
-        """The functions as the compiled kernels take them."""
+        """The basis functions as an object of the compiled kernels, made once."""
         return kernels.Cover(np.ascontiguousarray(self.min_area), self.first, self.shape, self.flank_ends)
 
 
@@ -154,7 +154,11 @@ class BasisFunctions(NamedTuple):
 
 
 def functions_within(facing_pairs: FacingPairs, cover: Cover, limit: float) -> BasisFunctions:
-    """Find the basis functions whose gap a rotation of the pinion would close.
+    """Find the basis functions whose gap a rotation of the pinion would close, by means over their
+    points.
+
+    Gap and lever arm are means weighted by function value and area. Functions of which less than
+    `min_area` is opposite a tooth are left out.
 
     Parameters
     ----------
@@ -224,7 +228,7 @@ class Lattice:
 
     @property
     def flank_end(self) -> float:
-        """The refined row beyond which points lie in the fillet."""
+        """Refined row number beyond which points lie in the fillet: the flank's last row plus ROUNDING."""
         rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
         return (rows - 1) * self.refinement.profile + ROUNDING
 

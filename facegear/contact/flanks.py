@@ -96,7 +96,9 @@ class PinionSurface:
 
     @cached_property
     def pressure(self) -> Basis:
-        """Basis of pressures on the contact grid."""
+        """Bilinear pressure functions on the refined lattice with their Gauss points, see
+        `pressure_basis`.
+        """
         return pressure_basis(self.shape)
 
     @cached_property
@@ -130,7 +132,9 @@ class PinionSurface:
 
     @cached_property
     def under(self) -> tuple[Integers, Array]:
-        """Hats (q, 4) that each point lies under, and their values (q, 4) there."""
+        """Numbers (q, 4) of the hats that are not zero at each integration point, and their values (q, 4)
+        there.
+        """
         hats = self.hats
         return hats.indices.reshape(-1, 4).astype(np.int64), hats.data.reshape(-1, 4)
 

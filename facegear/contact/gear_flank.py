@@ -209,6 +209,8 @@ def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends
 def contact_model(design: PairDesign, pinion: GearFlank, gear: GearFlank) -> ContactModel:
     """Build the contact model of a pair from flanks made for the same design.
 
+    Whether displacements are linear between nodes is taken from the pinion's compliance for both gears.
+
     Parameters
     ----------
     design : PairDesign

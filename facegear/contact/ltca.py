@@ -150,7 +150,10 @@ class ContactModel:
         return self.of(replace(self.design, assembly=errors))
 
     def of(self, design: PairDesign) -> "ContactModel":
-        """Return the same bodies for a design that differs only in properties that move no node of theirs.
+        """Return the same bodies for a design that differs only in properties that move no node of
+        theirs.
+
+        Such are assembly errors and deviations of the flanks.
 
         Parameters
         ----------
@@ -192,6 +195,8 @@ def loaded_contact(
 ) -> list[LoadedPosition]:
     """Solve for the contact at all positions and torques, position by position.
 
+    A `known_contact` changes how far contact is searched first, not the results beyond rounding.
+
     Parameters
     ----------
     model : ContactModel
@@ -199,7 +204,7 @@ def loaded_contact(
     positions : Sequence[float]
         In pitches, 0 to 1; 0.5 where phi1 = 0.
     torques : Sequence[float]
-        On the pinion, N m.
+        On the pinion, N m, above 0, in any order.
     options : ContactOptions, optional
         Surfaces and couplings that take part; the default options if None.
     known_contact : KnownContact, optional
@@ -208,7 +213,8 @@ def loaded_contact(
     Returns
     -------
     list[LoadedPosition]
-        Result at each position and torque, in SI units (N, m, rad).
+        Result at each position and torque, in SI units (N, m, rad); all torques of the first position in
+        their order, then those of the next.
 
     Raises
     ------

@@ -60,12 +60,14 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
 def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
     """Compute the number of surface nodes of a flank: two an element in both directions.
 
+    The profile's height is taken as the sum of both addenda, the width as that of the face gear.
+
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     sizes : MeshSizes
-        Element sizes.
+        Element sizes before refinement.
     plan : ContactPlan
         Refinement of the elements.
 
@@ -145,12 +147,12 @@ def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
 
 
 def node_spacing(sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Compute the distance of the contact surface's nodes across the profile.
+    """Compute the distance of the contact surface's nodes across the profile: half a refined element.
 
     Parameters
     ----------
     sizes : MeshSizes
-        Element sizes.
+        Element sizes before refinement.
     plan : ContactPlan
         Refinement of the elements.
 

@@ -43,7 +43,9 @@ class Placements:
 
     @property
     def angles_and_teeth(self) -> tuple[Array, Array, Array]:
-        """Angles and pair numbers in the form that the geometry takes."""
+        """Angles phi1, phi2 (rad) and pair numbers as floats, each (p,), as `facegear.teeth.separation`
+        takes them.
+        """
         return self.phi1, self.phi2, self.tooth.astype(float)
 
 

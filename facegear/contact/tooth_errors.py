@@ -43,14 +43,14 @@ def at_places(teeth: Teeth, positions: tuple[Array, Array]) -> Array:
     Parameters
     ----------
     teeth : Teeth
-        Deviation of each tooth.
+        Deviation of each tooth; 0 for None.
     positions : tuple of arrays (...)
         Distances along face and profile, m, as in `DeviationGrid`.
 
     Returns
     -------
     (teeth, ...) array
-        Deviations, m.
+        Deviations, m, in the sign of `DeviationGrid`.
     """
     different = list(dict.fromkeys(teeth))
     values = np.stack([deviation(grid, *positions) for grid in different])

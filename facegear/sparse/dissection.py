@@ -102,6 +102,7 @@ class _Cells:
     """
 
     def __init__(self, dof_groups: _DofGroups, centres: Array) -> None:
+        """Prepare positions, groups and buffers of cells at `centres` (m, 3), m."""
         self.along = centres @ DIRECTIONS.T
         self.size = dof_groups.size
         self.start, self.indices = dof_groups.cells.indptr[:-1].astype(np.int64), dof_groups.cells.indices

@@ -90,9 +90,10 @@ class Scale:
 
 
 def scale(torques: Array, largest: Array, lone: float, beyond: float) -> Scale:
-    """Derive the exponents from largest values, between SMALLEST and LARGEST.
+    """Derive the exponents of torque from largest values: d log value / d log torque between neighbours.
 
-    Below the first torque the exponent is FALLS less than that of the first two torques.
+    They are clipped to SMALLEST and LARGEST. Below the first torque the exponent is FALLS less than that
+    of the first two torques, but not below SMALLEST.
 
     Parameters
     ----------

@@ -33,7 +33,8 @@ from facegear.teeth.mesh_sizes import MeshSizes
 def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> RootStress:
     """Superpose the root stress of one body under the loads of stage contact on its flank.
 
-    Forces on its fillet are left out: the gauges below would read the dent.
+    Forces on its fillet are left out: the gauges below would read the dent. The teeth read run from the
+    one before the first loaded tooth to the one after the last.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> Roo
     loads : Arrays
         Arrays of nodal loads (LOAD_ARRAYS).
     variant : int
-        Index of the variant of assembly errors.
+        Index of the variant of assembly errors in `loads`.
 
     Returns
     -------

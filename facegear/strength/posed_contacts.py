@@ -89,6 +89,9 @@ def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: C
 def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> FlankContact:
     """Return a contact whose stresses are multiplied by factors of the torque.
 
+    Pressure and its error have the factor of PRESSURE, root stress of a body that of ROOTS. Loads on
+    edges and in fillets stay.
+
     Parameters
     ----------
     contact : FlankContact
@@ -117,6 +120,9 @@ def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> Flank
 
 def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, AnyArray]:
     """Return the root stress of one contact as arrays that are stored beside those of others.
+
+    Names begin with `contact` and the number: torque_n_m, and of each body passage and stress_pa. The
+    arrays along_m, angle_rad and error of each body are common to all contacts.
 
     Parameters
     ----------

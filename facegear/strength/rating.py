@@ -86,7 +86,9 @@ class FailureRating:
 
     @property
     def reason(self) -> str:
-        """Reason for red: the damage with the life that follows, or the safety that lacks; empty if green."""
+        """Reason for red, empty if green: damage and life, or the safety with that required, or an
+        immediate break.
+        """
         if self.verdict == "green":
             return ""
         harm = float(self.damage.sum())
@@ -99,7 +101,9 @@ class FailureRating:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Remarks on loads whose stress the rating method does not know."""
+        """Remarks on load that the stress leaves out: on tip edges (for pitting, from EDGE on) and in
+        fillets.
+        """
         caveats = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
             caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")

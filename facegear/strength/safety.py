@@ -109,9 +109,11 @@ def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> f
 
 
 def reversal(root: RootStress, duty: FlankDuty) -> float:
-    """Return the stress ratio of a turn at the place of the largest stress, in the bin of the largest load.
+    """Return the stress ratio R of a turn at the place of the largest tension, in the bin of the largest
+    load.
 
-    Compression comes from the loads of the other flank; where it has none stress is taken to rise from 0.
+    The place is on the fillet below the rated flank. Compression comes from the loads of the other flank;
+    where it has none stress is taken to rise from 0, and R is 0.
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def reversal(root: RootStress, duty: FlankDuty) -> float:
     Returns
     -------
     float
-        Smallest over largest stress, dimensionless.
+        Smallest over largest stress, dimensionless; negative where stress swings.
     """
     worst = int(np.argmax(np.where(duty.cycles > 0.0, duty.torque, 0.0)))
     opposite_torque = duty.opposite[duty.bins[worst]]
@@ -217,7 +219,10 @@ def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
 
 
 def standard_bending(design: PairDesign, form: RootForm) -> Stress:
-    """Return F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the narrower face.
+    """Return the root stress F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the
+    narrower face b.
+
+    F_t is the torque over the pinion's pitch radius, m the module.
 
     Parameters
     ----------
@@ -229,7 +234,7 @@ def standard_bending(design: PairDesign, form: RootForm) -> Stress:
     Returns
     -------
     Stress
-        Stress (Pa) at a torque (N m) on the pinion.
+        Function from torque (N m) on the pinion to stress (Pa).
     """
     scale = form.form_factor * form.stress_correction / (_width(design) * design.module)
     return lambda torque: torque / design.pinion_pitch_radius * scale

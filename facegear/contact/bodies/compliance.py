@@ -82,7 +82,7 @@ def flank_compliance(
     element: Element = "hex27",
     gauges: sp.csr_matrix | None = None,
 ) -> FlankCompliance:
-    """Compute the flank compliance of `teeth` copies of a body with cut faces.
+    """Compute the flank compliance of `teeth` copies of a body with cut faces, by static condensation.
 
     All teeth have the same refinement, so that one factorisation serves the loaded tooth and its
     neighbours. A body without cut faces is a gear of its own.
@@ -94,15 +94,16 @@ def flank_compliance(
     refinement : Refinement
         Refinement of the flank layer.
     teeth : int
-        Number of copies.
+        Number of copies; not used for a body without cut faces.
     neighbours : int
         Number of neighbours on each side of the loaded tooth whose compliance is kept.
     ends : Ends
-        Kind of ends of a row of teeth, or ring.
+        `ring` of all teeth, or a row with the loaded tooth in the middle and `free` or `clamped` end
+        faces.
     element : Element
         Other elements than hex27 are linear elements on the same nodes, for comparison.
     gauges : (g, 3 n) sparse matrix, optional
-        Readings by the displacements of the body's n nodes, which must lie on its surface.
+        Readings by the displacements of the body's n nodes, which must lie on its surface, Pa/m.
 
     Returns
     -------
