@@ -210,7 +210,8 @@ LEVELS = (0.001, 0.01, 0.05)
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fourier series through all n samples, orders 0..(n-1)//2.
+    """Discrete Fourier series of n samples, orders 0..(n-1)//2; it passes through all of them if n is
+    odd.
 
     Attributes
     ----------

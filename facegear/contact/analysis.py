@@ -266,7 +266,8 @@ ONE_FLANK = np.zeros((2, 2), dtype=int)
 class PosedContact:
     """Drive flanks in one assembly: tables and arrays as stage contact stores them.
 
-    reactions: as returned by `touching_reactions`.
+    ltca: columns LTCA_COLUMNS; by_torque: as `summary.by_torque` returns it; pressure and loads:
+    PRESSURE_ARRAYS and LOAD_ARRAYS; reactions: as returned by `touching_reactions`.
     """
 
     errors: AssemblyErrors

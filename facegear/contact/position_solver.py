@@ -38,16 +38,20 @@ START_GAP, START_WIDTH = 0.6, 0.14
 class SearchStrip(NamedTuple):
     """How wide a strip contact is sought in.
 
+    The rotation t = gap / lever arm closes a function; c is the least t of its pair in its column of the
+    lattice. The function is in the strip if t - c < width (gap * limit - c), with `gap` and `width` of
+    this tuple.
+
     Attributes
     ----------
     gap, width, wider
-        GAP, WIDTH and WIDER.
+        GAP, WIDTH and WIDER, or values in their place.
     begin, begin_width
-        Where the search starts: START_GAP of the rotation that is expected under the first torque, as a part
-        of the limit, and START_WIDTH.
+        Where the search starts: START_GAP of the rotation that is expected under the first torque, as a
+        part of the limit, and START_WIDTH.
     near : (p, n)
-        Nodes of the lattice of each pair whose functions belong to the strip in any case; (0, 0) if none is
-        known to.
+        Nodes of the lattice of each pair whose functions belong to the strip in any case; (0, 0) if none
+        is known to.
     """
 
     gap: float

@@ -69,8 +69,11 @@ class SectionErrors:
 def section_errors(
     design: PairDesign, body: str, build: Builder, sizes: MeshSizes, material: Material
 ) -> SectionErrors:
-    """Estimate the relative root-stress error of a body's mesh: in the middle plane of the pinion, in five
-    planes of the gear.
+    """Estimate the relative root-stress error of a body's mesh, by plane sections of the mesh and of a
+    finer one.
+
+    It is the largest |tension / reference - 1| of line loads at HEIGHTS, in the middle plane of the
+    pinion or in five planes of the gear: both meshes are built with two elements along the face for it.
 
     Parameters
     ----------
@@ -79,7 +82,7 @@ def section_errors(
     body : str
         `pinion` or `face_gear`.
     build : Builder
-        Function that makes the tooth's mesh.
+        Function that makes the tooth's mesh from design and sizes.
     sizes : MeshSizes
         Element sizes of the mesh.
     material : Material

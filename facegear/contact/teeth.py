@@ -43,8 +43,8 @@ class ContactSide:
 
 
 def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) -> ContactSide:
-    """Return the surface of a tooth that can touch: its flank and the fillet rows that the other gear's tip
-    can reach.
+    """Return the surface of a tooth that can touch: its flank and the fillet rows that the other gear's
+    tip can reach, with FILLET_MARGIN.
 
     Parameters
     ----------

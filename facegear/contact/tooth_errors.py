@@ -90,7 +90,8 @@ def loaded_curves(
     Returns
     -------
     dict of arrays
-        Transmission error (teeth * positions,) by gear, m, evenly over one turn.
+        Transmission error (teeth * positions,) by gear, m, evenly over one turn; positive for added
+        material.
     """
     cases = loads["variant"] == variant
     torques, positions = (np.unique(loads[name][cases]) for name in ("torque_n_m", "position"))
@@ -224,7 +225,11 @@ def _tip_edge_gaps(
 
 
 def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) -> Array:
-    """Compute the transmission error without load; pair j of cycle k consists of tooth k - j of both gears.
+    """Compute the transmission error without load; pair j of cycle k consists of tooth k - j of both
+    gears.
+
+    It is the mean flanks' error plus the largest of (deviation of both teeth - gap) over all pairs and
+    points.
 
     Parameters
     ----------
@@ -238,7 +243,8 @@ def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) ->
     Returns
     -------
     (cycles, positions) array
-        Transmission error, m.
+        Transmission error, m, positive where the gear is ahead (opposite in sign to
+        `LoadedPosition.ste`).
     """
     values = {body: at_places(teeth[body], gaps.positions[body]) for body in BODIES}
     best = np.full((cycles, gaps.mean.size), -np.inf)

@@ -27,19 +27,19 @@ STEEP = 10.0
 
 
 def passage_forces(largest: Array) -> Array:
-    """Return the largest force in every mesh cycle and the one after it.
+    """Return the largest force during each passage of a tooth: of a mesh cycle and the one after it.
 
     A tooth is in mesh for about two mesh cycles; the last one is followed by the first.
 
     Parameters
     ----------
     largest : (cycles, flanks) array
-        Largest force of each mesh cycle, N, not negative.
+        Largest force of each mesh cycle on each flank, N, not negative.
 
     Returns
     -------
     (cycles, flanks) array
-        Largest force of each passage, N.
+        Largest force of each passage, by the cycle in which it begins, N.
     """
     return np.maximum(largest, np.roll(largest, -1, axis=0))
 

@@ -131,8 +131,9 @@ def rate(
 ) -> list[FailureRating]:
     """Rate bending and pitting of every loaded flank.
 
-    Each is rated by the contact analysis and by the cylindrical standard. The standard alone judges pitting
-    where no `pressure` away from edges is known.
+    Each is rated by the contact analysis and by the cylindrical standard: bending by `finite elements`
+    and, for pinions, `ISO 6336-3`; pitting by `contact analysis` and `ISO 6336-2`. The standard alone
+    judges pitting where no `pressure` away from edges is known.
 
     Parameters
     ----------
@@ -147,7 +148,8 @@ def rate(
     request : RatingRequest
         Bodies, duty cycle and required safeties.
     of_loads : LoadStresses or None
-        Stresses of the only flank of the request, if its contact pose differs between loads.
+        Stresses of the only flank of the request, if its contact pose differs between loads; they replace
+        those that `roots` and `pressure` give by torque.
 
     Returns
     -------

@@ -63,7 +63,7 @@ class RatingRequest:
     Attributes
     ----------
     bodies
-        Bodies `pinion` and `face_gear`.
+        Limits and roughness by gear, `pinion` and `face_gear`.
     duty
         Loads of the flanks of all gears.
     time

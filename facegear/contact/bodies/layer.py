@@ -337,7 +337,7 @@ def _mirror_masters(body: ElasticBody, layer: Layer, coarse: Integers, fine: Int
 
 
 def _centres(body: ElasticBody) -> Array:
-    """Return the centres (m, 3) of the body's elements."""
+    """Return the centre (m, 3), m, of each of the body's elements: the mean position of its 27 nodes."""
     return body.points[body.mesh.dofs.element_dofs].mean(axis=0)
 
 
