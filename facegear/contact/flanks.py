@@ -297,7 +297,8 @@ class GearSurface:
         Returns
         -------
         (p, n, 2) array
-            Refined lattice coordinates, dimensionless.
+            Refined lattice coordinates (across the profile from the tip, along the radius from the inner
+            end), dimensionless.
         """
         face, rows, fillet_shares = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
         row = hits.flank * (rows - 1)

@@ -40,7 +40,7 @@ GRADIENT = 0.2
 
 
 def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """Return the elasticity factor Z_E of two bodies (ISO 6336-2).
+    """Return the elasticity factor Z_E = sqrt(1 / (pi sum((1 - nu^2) / E))) of two bodies (ISO 6336-2).
 
     Parameters
     ----------
@@ -57,7 +57,8 @@ def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -
 
 
 def contact_ratio_factor(contact_ratio: float) -> float:
-    """Return the contact ratio factor Z_epsilon of spur gears (ISO 6336-2).
+    """Return the contact ratio factor Z_epsilon = sqrt((4 - contact_ratio) / 3) of spur gears (ISO
+    6336-2).
 
     Parameters
     ----------
@@ -75,10 +76,12 @@ def contact_ratio_factor(contact_ratio: float) -> float:
 def relative_notch_sensitivity(slip_layer: float, notch_parameter: float) -> float:
     """Return the relative notch sensitivity factor Y_delta rel T for the endurance limit (ISO 6336-3).
 
+    It is n(q_s) / n(REFERENCE_NOTCH) with n(q) = 1 + sqrt(rho' chi*_p (1 + 2 q)), chi*_p = GRADIENT.
+
     Parameters
     ----------
     slip_layer : float
-        Thickness of the slip layer, m.
+        Thickness rho' of the slip layer, m.
     notch_parameter : float
         Notch parameter q_s, dimensionless.
 
@@ -116,6 +119,8 @@ def relative_surface_factor(roughness: float) -> float:
 
 def size_factor(module: float) -> float:
     """Return the size factor Y_X (ISO 6336-3) of case-carburised steel for the bending limit.
+
+    It is 1.05 - 0.01 per mm of module, within 0.8 to 1.
 
     Parameters
     ----------
@@ -248,8 +253,8 @@ def _tangent_angle(g: float, h: float, teeth: int) -> float:
     """Solve theta = 2 g tan(theta) / teeth - h of ISO 6336-3 for the angle theta (rad), by fixed-point
     iteration.
 
-    g: distance of the rack's tip rounding from the pitch line, in modules; h: rad. Raise NotConverged
-    after ITERATIONS.
+    The standard calls g (rho_fP - h_fP + profile shift, in modules) and h (rad) G and H. Raise
+    NotConverged after ITERATIONS.
     """
     angle = pi / 6.0
     for _ in range(ITERATIONS):
