@@ -28,6 +28,9 @@ class Harmonics:
     cosine: Array
 
     def __post_init__(self) -> None:
+        """Copy both arrays as read-only floats; raise ValueError unless shapes agree, all is finite and
+        sine[0] is 0.
+        """
         sine = np.array(self.sine, dtype=float)
         cosine = np.array(self.cosine, dtype=float)
         if sine.ndim != 1 or sine.shape != cosine.shape or sine.size == 0:
@@ -74,7 +77,7 @@ class Harmonics:
         return np.sin(angle) @ self.sine + np.cos(angle) @ self.cosine
 
     def shift(self, cycles: float) -> "Harmonics":
-        """Return the series of k(t - cycles T).
+        """Return the series of k(t - cycles T), T the mesh period: features come later by `cycles`.
 
         Parameters
         ----------
@@ -93,7 +96,7 @@ class Harmonics:
         return Harmonics(sine, self.cosine * cos - self.sine * sin)
 
     def truncate(self, order: int) -> "Harmonics":
-        """Return the series cut after an order.
+        """Return the series without the terms above an order; no other coefficient changes.
 
         Parameters
         ----------
@@ -103,12 +106,12 @@ class Harmonics:
         Returns
         -------
         Harmonics
-            Truncated series.
+            Truncated series; the same if it has no higher orders.
         """
         return Harmonics(self.sine[: order + 1], self.cosine[: order + 1])
 
     def scale(self, factor: float) -> "Harmonics":
-        """Return the series times a factor.
+        """Return the series times a factor, the mean included.
 
         Parameters
         ----------
@@ -124,6 +127,8 @@ class Harmonics:
 
     def add_compliance(self, compliance: float) -> "Harmonics":
         """Return the series of 1 / (1 / k + compliance) up to the same order.
+
+        It is found by a Fourier transform of 64 (H+1) samples of a period; higher orders are cut off.
 
         Parameters
         ----------
@@ -205,7 +210,8 @@ LEVELS = (0.001, 0.01, 0.05)
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fourier series through all n samples, orders 0..(n-1)//2.
+    """Discrete Fourier series of n samples, orders 0..(n-1)//2; it passes through all of them if n is
+    odd.
 
     Attributes
     ----------
@@ -243,8 +249,10 @@ class Fit:
 
 
 def fit_harmonics(samples: Array) -> Fit:
-    """Fit a Fourier series to samples at 0, 1/n, 2/n ... of a period by least squares (discrete Fourier
-    transform).
+    """Compute the discrete Fourier series of samples at 0, 1/n, 2/n ... of a period, orders 0..(n-1)//2.
+
+    It is the least-squares fit of these orders. It passes through all samples if n is odd; if n is even,
+    the order n/2 is missing.
 
     Parameters
     ----------
@@ -283,7 +291,9 @@ def fit_harmonics(samples: Array) -> Fit:
 
 
 def _transform(samples: Array) -> Harmonics:
-    """Return the Fourier series of evenly spaced samples of one period."""
+    """Return the Fourier series of n evenly spaced samples of one period, the first at its start, up to
+    (n-1)//2.
+    """
     count = samples.size
     spectrum = np.fft.rfft(samples)[: (count - 1) // 2 + 1] / count
     spectrum[1:] *= 2.0

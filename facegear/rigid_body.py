@@ -16,17 +16,22 @@ Rounding leaves 1e-16; the softest real bearing against the stiffest one that a 
 
 
 def carry_motion(distance: float) -> Array:
-    """Return the motion of a point of a rigid shaft by that of another point.
+    """Return the matrix that gives the motion of a point of a rigid shaft from that of another point.
+
+    With small tilts (rad) about x and y it is x + distance tilt_y and y - distance tilt_x; the rest is
+    equal.
 
     Parameters
     ----------
     distance : float
-        Place of the point along z from the other one, m.
+        Place of the point along z less that of the other one, m.
 
     Returns
     -------
     Array
-        Motions by motions (5, 5), m and rad; its transpose carries a load back.
+        Motions by motions (5, 5), in the order x, y, z, tilt_x, tilt_y, m and rad; its transpose carries
+        a
+        load at the point back to the other one.
     """
     matrix = np.eye(MOTIONS)
     matrix[0, 4], matrix[1, 3] = distance, -distance
@@ -34,14 +39,17 @@ def carry_motion(distance: float) -> Array:
 
 
 def is_held(distances: Sequence[float], stiffnesses: Sequence[Array], length: float) -> bool:
-    """Tell whether bearings hold a rigid shaft against every motion.
+    """Tell whether bearings hold a rigid shaft against every motion but rotation about its axis.
+
+    The 5 x 5 stiffness of the shaft is summed over the bearings, its tilts are scaled by `length`, and
+    its smallest eigenvalue must be above LOOSE times the largest.
 
     Parameters
     ----------
     distances : sequence of float
         Places of the bearings along the shaft from any point of it, m.
     stiffnesses : sequence of Array
-        Stiffness of each bearing (5, 5), N/m, N/rad and N m/rad.
+        Stiffness of each bearing (5, 5), order x, y, z, tilt_x, tilt_y; N/m, N/rad and N m/rad.
     length : float
         Length of the shaft, m, by which tilts are compared with shifts.
 

@@ -15,7 +15,7 @@ TIE = 1e-4
 
 
 def first_largest(values: Array) -> int:
-    """Find the first of the values that are as large as the largest.
+    """Find the first of the values that are as large as the largest, within TIE relative to it.
 
     Parameters
     ----------
@@ -31,7 +31,8 @@ def first_largest(values: Array) -> int:
 
 
 def first_largest_row(table: pd.DataFrame, column: str) -> pd.Series:
-    """Find the first row of a table whose number is as large as the largest of its column.
+    """Find the first row of a table whose number is as large as the largest of its column, within TIE
+    relative to it.
 
     Parameters
     ----------
@@ -73,5 +74,7 @@ def first_largest_rows(table: pd.DataFrame, column: str, keys: list[str], sort: 
 
 
 def _smallest_tie(largest: Any) -> Any:
-    """Return the smallest number that counts as equal to the largest, for numbers or arrays of them."""
+    """Return the smallest number that counts as equal to `largest`: largest - TIE |largest|, for numbers
+    or arrays.
+    """
     return largest - TIE * abs(largest)

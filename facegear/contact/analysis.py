@@ -69,7 +69,9 @@ def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd
 
 
 def _pressures(loads: LineLoads) -> tuple[float, ...]:
-    """Largest pressure inside and its error (MPa), line load (N/mm) and loaded length (mm) of tip edges."""
+    """Return largest pressure inside and its error (MPa), then line load (N/mm) and loaded length (mm) of
+    tip edges.
+    """
     largest, error = loads.largest()
     tip, length = loads.at_tips()
     return 1e-6 * largest, 1e-6 * error, 1e-3 * tip, 1e3 * length
@@ -129,7 +131,9 @@ def pressure_arrays(
 
 
 def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
-    """Return torque, position, tooth, node and force of every loaded basis function."""
+    """Return the first six PRESSURE_ARRAYS: torque, position, pair, node, force and `in_fillet` of each
+    loaded hat.
+    """
     spots = [(result, spot) for result in results for spot in result.spots]
     count = [spot.hats.size for _, spot in spots]
     return {
@@ -163,7 +167,7 @@ class ContactAnalysis:
 
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
-        """The contact table of each pair."""
+        """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position."""
         return [ltca_table(*result) for result in self.results]
 
     @cached_property
@@ -176,17 +180,19 @@ class ContactAnalysis:
 
     @cached_property
     def by_torque(self) -> list[pd.DataFrame]:
-        """Summary of each pair's tables, one row a torque."""
+        """Summary of each pair's contact, one row a torque, columns COLUMNS of `summary` and
+        `path_radius_mm`.
+        """
         return [by_torque(*tables) for tables in zip(self.ltca, self.pressure, strict=True)]
 
     @cached_property
     def by_flank(self) -> pd.DataFrame:
-        """`by_torque` of both flanks of both gears."""
+        """`by_torque` of both flanks of both gears, columns BY_FLANK_COLUMNS."""
         return by_flank(self.by_torque, [model.design for model in self.models], self.numbers)
 
     @cached_property
     def loads(self) -> dict[str, AnyArray]:
-        """Forces of all pairs on the nodes of both bodies, see `facegear.contact.pattern`."""
+        """Forces of all pairs on the nodes of both bodies, as LOAD_ARRAYS of `facegear.contact.pattern`."""
         return load_arrays([results for results, _ in self.results], self.numbers)
 
 
@@ -243,7 +249,11 @@ def _solve_model(
     plan: ContactPlan,
     known_contact: KnownContact | None,
 ) -> tuple[list[LoadedPosition], FlankPressure]:
-    """Solve contact of one flank at all positions and torques, with pressures."""
+    """Solve the contact of one pair at all positions and torques of the plan, and the pressure on its
+    flanks.
+
+    The results come position by position; pressures are in the same order.
+    """
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known_contact)
     return results, flank_pressure(results, model.flanks, materials)
 
@@ -256,7 +266,8 @@ ONE_FLANK = np.zeros((2, 2), dtype=int)
 class PosedContact:
     """Drive flanks in one assembly: tables and arrays as stage contact stores them.
 
-    reactions: as returned by `touching_reactions`.
+    ltca: columns LTCA_COLUMNS; by_torque: as `summary.by_torque` returns it; pressure and loads:
+    PRESSURE_ARRAYS and LOAD_ARRAYS; reactions: as returned by `touching_reactions`.
     """
 
     errors: AssemblyErrors
@@ -311,20 +322,20 @@ def met_contacts(
     plan: ContactPlan,
     pair_torques: Sequence[tuple[PairDesign, tuple[float, ...]]],
 ) -> Iterator[PosedContact]:
-    """Solve the contact of pairs of the design's bodies, each at its own torques.
+    """Solve the contact of pairs of the design's bodies in other assemblies, each at its own torques.
 
     Parameters
     ----------
     design : PairDesign
-        Pair of gears.
+        Pair of gears that the flanks were made for.
     materials : tuple[Material, Material]
         Pinion and face gear.
     flanks : tuple[GearFlank, GearFlank]
         Surfaces and compliances of pinion and face gear.
     plan : ContactPlan
-        Positions and options.
+        Positions and options; its torques are not used.
     pair_torques : Sequence[tuple[PairDesign, tuple[float, ...]]]
-        Pairs of the same bodies, and torques of each, N m.
+        Pairs that differ from `design` in properties that move no node, and torques of each, N m.
 
     Yields
     ------
@@ -346,7 +357,9 @@ def met_contacts(
 def _solve_assembly(
     model: ContactModel, errors: AssemblyErrors, materials: tuple[Material, Material], plan: ContactPlan
 ) -> PosedContact:
-    """Solve contact of a pair with assembly errors, with its tables and arrays."""
+    """Solve the contact of one pair whose `errors` are already in `model`, and make its tables and
+    arrays.
+    """
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
     pressures = flank_pressure(results, model.flanks, materials)
     table = ltca_table(results, pressures)

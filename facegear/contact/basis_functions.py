@@ -77,11 +77,14 @@ class FacingPairs:
     """
 
     def __init__(self, points: FacingPoints, starts: Integers, teeth: Integers) -> None:
+        """Keep points (q,) of all pairs, the first point of each pair with q last (p + 1,), and pair
+        numbers (p,).
+        """
         self.points, self.starts, self.teeth = points, starts, teeth
 
     @cached_property
     def kernel(self) -> kernels.FacingPoints:
-        """The points as the compiled kernels take them."""
+        """The points as an object of the compiled kernels, made once."""
         points, contiguous = self.points, np.ascontiguousarray
         return kernels.FacingPoints(
             contiguous(points.gap),
@@ -114,11 +117,14 @@ class Cover:
     def __init__(
         self, min_area: Array, first: int, shape: tuple[int, int], flank_ends: tuple[float, float]
     ) -> None:
+        """Keep the smallest covered area of each basis function and their numbering; arguments as in the
+        class.
+        """
         self.min_area, self.first, self.shape, self.flank_ends = min_area, first, shape, flank_ends
 
     @cached_property
     def kernel(self) -> kernels.Cover:
-        """The functions as the compiled kernels take them."""
+        """The basis functions as an object of the compiled kernels, made once."""
         return kernels.Cover(np.ascontiguousarray(self.min_area), self.first, self.shape, self.flank_ends)
 
 
@@ -148,7 +154,11 @@ class BasisFunctions(NamedTuple):
 
 
 def functions_within(facing_pairs: FacingPairs, cover: Cover, limit: float) -> BasisFunctions:
-    """Find the basis functions whose gap a rotation of the pinion would close.
+    """Find the basis functions whose gap a rotation of the pinion would close, by means over their
+    points.
+
+    Gap and lever arm are means weighted by function value and area. Functions of which less than
+    `min_area` is opposite a tooth are left out.
 
     Parameters
     ----------
@@ -218,7 +228,7 @@ class Lattice:
 
     @property
     def flank_end(self) -> float:
-        """The refined row beyond which points lie in the fillet."""
+        """Refined row number beyond which points lie in the fillet: the flank's last row plus ROUNDING."""
         rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
         return (rows - 1) * self.refinement.profile + ROUNDING
 
@@ -243,7 +253,8 @@ class Lattice:
         return np.asarray(at[:, 0] > self.flank_end)
 
     def interpolation_rows(self) -> Rows:
-        """Interpolate from the nodes before refinement to the refined ones.
+        """Return the interpolation of displacements from the c nodes before refinement to the n refined
+        ones.
 
         Returns
         -------
@@ -253,7 +264,7 @@ class Lattice:
         return _interpolation_rows(self)
 
     def loads(self, rows: Rows, at: Array, is_refined: bool = True) -> sp.csr_matrix:
-        """Spread unit forces on nodes.
+        """Distribute unit forces to nodes by the displacement's shape functions (consistent nodal loads).
 
         Parameters
         ----------
@@ -279,7 +290,10 @@ class Lattice:
 
 @lru_cache(maxsize=8)
 def _interpolation_rows(lattice: Lattice) -> Rows:
-    """Return the interpolation from coarse nodes as arrays of a sparse matrix for the kernel."""
+    """Return the interpolation from nodes before refinement to refined nodes as (pointer, index, weight).
+
+    Row i gives refined node i; the arrays are cached and only read.
+    """
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     matrix = interpolation(nodes, lattice.coarse, lattice.linear)
     matrix.eliminate_zeros()

@@ -225,9 +225,11 @@ def gather_points(
     bounds = list(zip(starts.tolist(), ends.tolist(), ends[1:].tolist(), strict=False))
 
     def join_points(on_edge: AnyArray, on_pinion: AnyArray, numbers: Integers | None = None) -> AnyArray:
-        """Return values of the edge's points (p, e, ...) and the pinion's (q, ...) as one array.
+        """Return values of the edge's points (p, e, ...) and the pinion's (q, ...) as one array, pair by
+        pair.
 
-        With numbers (q,) the pinion's values stand in these rows, which are copied once.
+        Each pair has its edge points first. With `numbers` (q,) the row numbers[i] of `on_pinion` belongs
+        to point i of the pairs; without, row i does.
         """
         values = np.empty((starts[-1], *on_pinion.shape[1:]), on_pinion.dtype)
         for (start, begin, end), edge_values in zip(bounds, on_edge, strict=True):
@@ -240,7 +242,9 @@ def gather_points(
         return values
 
     def at_each_pair(values: AnyArray, columns: int) -> AnyArray:
-        """Return values (e, c) at the edge's points of each pair (p, e, columns), 0 in further columns."""
+        """Return values (e, c) of the edge's points as (p, e, columns), the same for each pair, 0 in
+        columns beyond c.
+        """
         padded_values = np.pad(values, ((0, 0), (0, columns - values.shape[1])))
         return np.broadcast_to(padded_values, (pairs, *padded_values.shape))
 
@@ -273,7 +277,8 @@ def flank_cover(surface: PinionSurface) -> Array:
 
 
 def edge_cover(columns: int) -> Array:
-    """Smallest covered length of each edge basis function.
+    """Return the smallest covered length of each edge basis function: SMALLEST_COVER of its integral,
+    half at the ends.
 
     Parameters
     ----------
@@ -296,8 +301,11 @@ def influence_matrix(
     gear: FlankCompliance,
     is_coupled: bool = True,
 ) -> Array:
-    """Compute the influence matrix of all pairs in order: approach of function i by a unit force on function
+    """Compute the influence matrix of the loads of all pairs: approach at load i by a unit force of load
     j.
+
+    Both gears' normal displacements add up. Loads of one pair use the compliance of the loaded tooth on
+    refined nodes, loads of two pairs that of neighbours on nodes before refinement.
 
     Parameters
     ----------
@@ -313,7 +321,7 @@ def influence_matrix(
     Returns
     -------
     (m, m) array
-        Symmetric, m/N.
+        Symmetric, m/N; loads pair by pair in the order of `pairs`.
     """
     ends = np.cumsum([0] + [len(pair.hats) for pair in pairs])
     matrix = np.zeros((ends[-1], ends[-1]))
@@ -333,9 +341,9 @@ def influence_matrix(
 
 
 def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matrix) -> Array:
-    """Compute displacements by loads through a compliance.
+    """Compute the displacements first @ compliance @ second.T, m/N.
 
-    Only those columns of the compliance are read that the loads have entries for.
+    Only those columns of the compliance are read that `second` has entries for.
 
     Parameters
     ----------

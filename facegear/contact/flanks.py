@@ -31,7 +31,12 @@ OF_AN_EDGE = 0.5
 
 
 class PinionPoints(NamedTuple):
-    """Points (q, 3) of a pinion that may touch and their normals, with what `FacingPoints` has of them."""
+    """Points (q,) of a pinion that may touch, with their share of the fields of `FacingPoints`.
+
+    `position` and outward `normal` (q, 3) in the body frame, m; `at` (q, 2) refined lattice coordinates;
+    `lever_arm` (q,) m; `hats` (q, 4) numbers of the basis functions there and `values` (q, 4) of them;
+    `area` (q,) m2, for points of an edge OF_AN_EDGE node distances.
+    """
 
     position: Array
     normal: Array
@@ -44,12 +49,12 @@ class PinionPoints(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PinionSurface:
-    """The pinion's pressure hats and the exact points their integrals are taken at.
+    """The pinion's pressure basis functions (hats) and the exact points their integrals are taken at.
 
-    For q points: `at` (q, 2) on the refined lattice, `points`, `area` (q,) m2, `lever_arm` (q,) m (speed
-    along the normal per rotation), `hats` (q, n) their values, four a point; `cell` (q,) the flat index of
-    the cell between refined nodes that a point lies in, `element` that of the unrefined element (ne_u, ne_v)
-    of each cell.
+    For q Gauss points, four in each cell between refined nodes: `at` (q, 2) on the refined lattice,
+    `points`, `area` (q,) m2, `lever_arm` (q,) m (speed along the normal per rotation), `hats` (q, n)
+    their values, four a point; `cell` (q,) the flat index of the cell between refined nodes that a point
+    lies in, `element` that of the unrefined element (ne_u, ne_v) of each cell.
     """
 
     design: PairDesign
@@ -84,17 +89,23 @@ class PinionSurface:
 
     @cached_property
     def planes(self) -> Array:
-        """Positions (nv,) m along the pinion's axis of the lattice's planes."""
+        """Positions (nv,), m, along the pinion's axis of the lattice's columns of nodes, the planes
+        across the axis.
+        """
         return self.nodes.reshape(*self.shape, 3)[0, :, 1]
 
     @cached_property
     def pressure(self) -> Basis:
-        """Basis of pressures on the contact grid."""
+        """Bilinear pressure functions on the refined lattice with their Gauss points, see
+        `pressure_basis`.
+        """
         return pressure_basis(self.shape)
 
     @cached_property
     def at(self) -> Array:
-        """Position of each integration point on the contact grid (points, 2), in cells."""
+        """Refined lattice coordinates (q, 2) of each integration point, in node distances across profile
+        and along face.
+        """
         return cell_points(self.pressure)
 
     @cached_property
@@ -104,12 +115,14 @@ class PinionSurface:
 
     @cached_property
     def area(self) -> Array:
-        """Area of each cell of the contact grid, m^2."""
+        """Area (q,) that each integration point stands for, m2."""
         return cell_areas(self.nodes.reshape(*self.shape, 3))
 
     @cached_property
     def lever_arm(self) -> Array:
-        """Lever arm of each point's normal about the pinion's axis, m."""
+        """Lever arm (q,) of each point's normal about the pinion's axis, m: normal displacement per
+        rotation.
+        """
         return self.points.lever_arm
 
     @cached_property
@@ -119,13 +132,15 @@ class PinionSurface:
 
     @cached_property
     def under(self) -> tuple[Integers, Array]:
-        """Hats (q, 4) that each point lies under, and their values (q, 4) there."""
+        """Numbers (q, 4) of the hats that are not zero at each integration point, and their values (q, 4)
+        there.
+        """
         hats = self.hats
         return hats.indices.reshape(-1, 4).astype(np.int64), hats.data.reshape(-1, 4)
 
     @cached_property
     def full_area(self) -> Array:
-        """Area (n,) of each hat where nothing is cut off."""
+        """Area (n,) under each hat, the integral of its values, where nothing is cut off, m2."""
         return self.hats.T @ self.area
 
     @property
@@ -135,7 +150,7 @@ class PinionSurface:
 
     @cached_property
     def element(self) -> Integers:
-        """Number of the finite element's face below each cell of the contact grid."""
+        """Number (cells,) of the unrefined finite element's face below each cell between refined nodes."""
         rows, columns = (np.arange(count - 1) for count in self.shape)
         row, column = (
             part // (2 * cut) for part, cut in zip((rows, columns), self.lattice.factors, strict=True)
@@ -144,7 +159,9 @@ class PinionSurface:
 
     @cached_property
     def tip(self) -> tuple[Array, SurfacePoints]:
-        """Lattice coordinates (q, 2) of points along the tip edge, and the points."""
+        """Lattice coordinates (q, 2) of the Gauss points along the tip edge, row 0 of the lattice, and
+        the points, m.
+        """
         along, _, _ = edge_hats(self.shape[1])
         coordinates = np.stack([np.zeros(along.size), along], axis=1)
         return coordinates, self.exact(coordinates)
@@ -180,7 +197,9 @@ class PinionSurface:
 
     @cached_property
     def probes(self) -> tuple[SurfacePoints, Integers]:
-        """Points of the lattice before refinement, and the nodes (elements, 9) of its elements."""
+        """Exact points of the nodes before refinement, and the nine nodes (elements, 9) of each element's
+        face.
+        """
         nu, nv = self.side.shape
         nodes = np.arange(nu * nv).reshape(nu, nv)
         coarse = np.stack(np.meshgrid(np.arange(nu), np.arange(nv), indexing="ij"), axis=-1).reshape(-1, 2)
@@ -195,7 +214,7 @@ class PinionSurface:
 
     @cached_property
     def cell(self) -> Integers:
-        """Number of the cell of each integration point."""
+        """Number (q,) of the cell between refined nodes that each integration point lies in, row by row."""
         row, column = np.floor(self.at).astype(np.int64).T
         return row * (self.shape[1] - 1) + column
 
@@ -226,7 +245,9 @@ class PinionSurface:
 
 @lru_cache(maxsize=8)
 def _between_probes(lattice: Lattice) -> sp.csr_matrix:
-    """Interpolation from coarse nodes of a lattice to all its nodes."""
+    """Return the interpolation (n, c) from the c nodes of a lattice before refinement to its n refined
+    nodes.
+    """
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     return interpolation(nodes, lattice.coarse)
 
@@ -241,7 +262,9 @@ class GearSurface:
 
     @cached_property
     def tip(self) -> tuple[Array, Array]:
-        """Lattice coordinates (q, 2) of points of the left tip edge, and the points (q, 3) of tooth 0, m."""
+        """Lattice coordinates (q, 2) of the Gauss points of the left tip edge, and the points (q, 3) of
+        tooth 0, m.
+        """
         gear, columns = self.design.face_gear, self.lattice.shape[1]
         along, _, _ = edge_hats(columns)
         radius = gear.inner_radius + along / (columns - 1) * (gear.outer_radius - gear.inner_radius)
@@ -250,7 +273,11 @@ class GearSurface:
 
     @cached_property
     def _fillet_nodes(self) -> Array:
-        """Shares of the fillet at its rows' nodes (the same on all planes), 0 at the flank."""
+        """Fractions (rows,) of the fillet at its rows of nodes, the same on all planes, 0 at the flank.
+
+        They count the turn of the fillet's normal from the flank, 0, to the root, 1, see
+        `fillet_fraction`.
+        """
         first = self.side.v[-1, 0], self.side.u[self.side.flank_rows :, 0]
         return np.concatenate([[0.0], face_gear_fillet.fillet_fraction(self.design, *first)])
 
@@ -270,7 +297,8 @@ class GearSurface:
         Returns
         -------
         (p, n, 2) array
-            Refined lattice coordinates, dimensionless.
+            Refined lattice coordinates (across the profile from the tip, along the radius from the inner
+            end), dimensionless.
         """
         face, rows, fillet_shares = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
         row = hits.flank * (rows - 1)

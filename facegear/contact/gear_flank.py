@@ -173,7 +173,9 @@ def gear_flank(
 
 
 def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
-    """Return the extent of a body's model.
+    """Return how many teeth of a body are modelled, from the plan's sector.
+
+    Without a number in the plan, all teeth are modelled, as a ring.
 
     Parameters
     ----------
@@ -206,6 +208,8 @@ def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends
 
 def contact_model(design: PairDesign, pinion: GearFlank, gear: GearFlank) -> ContactModel:
     """Build the contact model of a pair from flanks made for the same design.
+
+    Whether displacements are linear between nodes is taken from the pinion's compliance for both gears.
 
     Parameters
     ----------

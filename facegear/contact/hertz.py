@@ -50,8 +50,8 @@ def contact_modulus(materials: tuple[Material, Material]) -> float:
 class ContactEllipse:
     """Elliptic contact of two bodies under a force.
 
-    long, short: semi-axes (m) in the directions of the smaller and the larger relative curvature. pressure:
-    largest (Pa). approach: of the bodies (m).
+    long, short: semi-axes (m) in the directions of the smaller and the larger relative curvature.
+    pressure: largest, at the centre (Pa). approach: of points of the bodies far from the contact (m).
     """
 
     long: float
@@ -61,14 +61,14 @@ class ContactEllipse:
 
 
 def contact_ellipse(force: float, across: float, along: float, modulus: float) -> ContactEllipse:
-    """Compute the contact ellipse of two bodies.
+    """Compute the contact ellipse of two bodies, by bisection for the ratio of its semi-axes.
 
-    For bodies with equal curvatures it is that of a sphere. Source: Johnson 1985, chapter 4.
+    Exact for any curvatures; bodies with equal curvatures give a circle. Source: Johnson 1985, chapter 4.
 
     Parameters
     ----------
     force : float
-        N.
+        Normal force, N.
     across : float
         Larger relative curvature, 1/m.
     along : float
@@ -79,10 +79,15 @@ def contact_ellipse(force: float, across: float, along: float, modulus: float) -
     Returns
     -------
     ContactEllipse
-        Semi-axes, pressure and approach, m and Pa.
+        Semi-axes, pressure and approach, m and Pa; all 0 without force.
     """
 
     def parts(ratio: float) -> tuple[float, float]:
+        """Return K - E and E / ratio^2 - K for the ratio of short to long semi-axis.
+
+        K and E are complete elliptic integrals with m = 1 - ratio^2; the ratio of both results is along /
+        across.
+        """
         square = ratio**2
         first, second = float(ellipkm1(square)), float(ellipe(1.0 - square))
         return first - second, second / square - first
@@ -136,7 +141,11 @@ def strip_pressure(
 
 
 def _half_width(load: Array, pressure: Array) -> Array:
-    """Return the half width, m, of a Hertzian line contact from load, N/m, and pressure, Pa."""
+    """Return the half-width, m, of a semi-elliptic pressure with load per length, N/m, and largest value,
+    Pa.
+
+    It is 2 load / (pi pressure), whatever the contact's length.
+    """
     return 2 * load / (pi * np.where(pressure == 0, 1.0, pressure))
 
 

@@ -34,13 +34,15 @@ FINER = (0.1, 0.02)
 
 @dataclass(frozen=True, eq=False)
 class ContactLines:
-    """Contact lines of p placements of pairs of teeth, on n planes across the pinion's axis at `y` (n,) m.
+    """Contact lines of p placements of pairs of teeth, on n planes across the pinion's axis at `y` (n,)
+    m.
 
-    All others (p, n): `roll` (rad) on the pinion; `curvature` (1/m) across the line, positive; `slope` (rad)
-    of the line against the pinion's axis, seen along the common normal; how far (m) the line is from the
-    pinion's and the gear's tip edge and from the nearest end of both faces, negative beyond the pinion's tip
-    and the ends. What needs the gear's flank is nan where there is none. `face` is the width (m) of
-    each plane that both faces cover, planes being as wide as they are apart.
+    All others (p, n): `roll` (rad) on the pinion; `curvature` (1/m) across the line, relative of both
+    flanks, positive; `slope` (rad) of the line against the pinion's axis, seen along the common normal;
+    how far (m) the line is from the pinion's and the gear's tip edge and from the nearest end of both
+    faces, negative beyond the pinion's tip and the ends. What needs the gear's flank is nan where there
+    is none. `face` is the width (m) of each plane that both faces cover, planes being as wide as they are
+    apart.
     """
 
     y: Array
@@ -111,7 +113,7 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
 def contact_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], y: Array
 ) -> tuple[Array, Array, Array]:
-    """Compute the least gaps of flanks in planes across the pinion's axis.
+    """Compute the least gaps of flanks in planes across the pinion's axis, along the pinion's normals.
 
     Parameters
     ----------
@@ -126,7 +128,7 @@ def contact_gaps(
     -------
     tuple of arrays
         Roll (p, n) on the pinion, rad; gap (p, n), m, inf where there is none; point (p, n, 3) on the
-        gear, m.
+        gear's flank in its body frame, m, nan where there is none.
 
     Raises
     ------
@@ -183,13 +185,17 @@ def _min_roll(design: PairDesign) -> float:
 
 
 def _arc(design: PairDesign, roll: Array | float) -> Array:
-    """Length (m) of the involute from the base circle."""
+    """Return the length (m) of the involute from the base circle to a roll angle (rad): r_b roll^2 / 2."""
     return design.pinion_base_radius * np.square(roll) / 2
 
 
 def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: Array) -> Array:
-    """Return the roll (p, n) of the least gap in each plane; the profile's end if the gap falls up
+    """Return the roll (p, n), rad, of the least gap in each plane; the profile's end if the gap falls up
     to there.
+
+    `placement` holds phi1, phi2 (rad) and pair numbers (p,); `y` (n,), m. The least of SAMPLES samples,
+    even in the square of the roll, is refined by parabolas through three gaps. Beyond the tip it ends at
+    BEYOND of the profile.
     """
     top, bottom = design.pinion_tip_roll**2, _min_roll(design) ** 2
     roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
@@ -230,8 +236,11 @@ def _sampled_gaps(
 
 
 def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array) -> Array:
-    """Return the gaps (p, k, n), m, to the gear's flank, extended beyond its ends, at squares of the roll
-    angle.
+    """Return the gaps (p, k, n), m, to the gear's flank, continued beyond its edges, along the pinion's
+    normals.
+
+    `roll_squared`: squares (rad2) of the roll angle on the pinion, (k, n) or (p, k, n), in planes y (n,),
+    m. A gap is inf where the continued flank is missed, too.
     """
     points = flank_points(design, np.sqrt(np.maximum(roll_squared, 0.0)), y)
     flat = (*roll_squared.shape[:-2], -1, 3)
@@ -251,8 +260,10 @@ def _vertex(before: Array, middle: Array, after: Array) -> Array:
 
 
 def _radius(y: Array, gear_radius: Array) -> Array:
-    """Return the gear radius (p, n); where `gear_radius` (p, n) is nan, its difference from y is
-    interpolated.
+    """Return the gear radius (p, n), m, of contact lines in planes y (n,), with its gaps filled.
+
+    Where `gear_radius` (p, n) is nan, its difference from y is interpolated over the planes; 0 without
+    any value.
     """
     difference = gear_radius - y
     for row in difference:
@@ -262,10 +273,11 @@ def _radius(y: Array, gear_radius: Array) -> Array:
 
 
 def _covered_width(design: PairDesign, y: Array, radius: Array) -> Array:
-    """Return the widths (p, n) under the linear basis functions of planes y (n,) between the ends of the
-    gear's face.
+    """Return the width (p, n), m, that the gear's face covers under the linear basis function of each
+    plane.
 
-    radius (p, n): gear radius (m) of the line.
+    y (n,), m: planes; radius (p, n): gear radius (m) of the contact line in them. An end of the face cuts
+    at the y where the line's radius is that of the end.
     """
     face = design.face_gear
     rows = np.arange(len(radius))
@@ -277,8 +289,10 @@ def _covered_width(design: PairDesign, y: Array, radius: Array) -> Array:
 
 
 def _hat_integral(y: Array, end: Array) -> Array:
-    """Return the integrals (m) of the linear basis functions of evenly spaced planes y (n,) from the first
-    plane to `end`.
+    """Return the integrals (..., n), m, of linear basis functions of evenly spaced planes from the first
+    to `end`.
+
+    y (n,), m: the planes; `end` (..., 1), m, is clipped to them.
     """
     step = y[1] - y[0]
     at = np.clip((np.clip(end, y[0], y[-1]) - y) / step, -1.0, 1.0)

@@ -33,10 +33,11 @@ from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
 @dataclass(frozen=True, eq=False)
 class KnownContact:
-    """Contact solved at p positions: largest rotation `turn` (p,) rad under any load, and loaded nodes.
+    """Contact solved at p positions: largest rotation `turn` (p,) rad of the pinion under any load, and
+    loaded nodes.
 
-    `near` (p, 5, nodes) marks the nodes of the pinion's lattice, for the pairs -2..2, that carry load or
-    are next to one that does across the profile.
+    `near` (p, 5, nodes) marks the nodes of the pinion's refined lattice, for the pairs -2..2, that carry
+    load under any torque or are next to one that does across the profile.
     """
 
     turn: Array
@@ -46,7 +47,8 @@ class KnownContact:
 def known_contact(
     results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], base_radius: float
 ) -> KnownContact | None:
-    """Extract the rotation and the loaded nodes from results.
+    """Extract the rotation and the loaded nodes from results of a pair, to speed up a pair that differs
+    little.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ def known_contact(
     positions : Sequence[float]
         All positions, in pitches.
     shape : tuple[int, int]
-        Lattice of the pinion.
+        Refined lattice of the pinion.
     base_radius : float
         Of the pinion, m.
 
@@ -84,10 +86,11 @@ TOUCHING_GAP = 1e-9
 
 
 def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> Integers:
-    """Return the pairs that may carry load at a pinion angle: all, or with `path_only` those on the path of
-    contact.
+    """Return the tooth pairs that may carry load at a pinion angle.
 
-    The path is that of the nominal assembly: between the tips of pinion and gear at the radius m N2 / 2.
+    They are all of -2..2, or with `path_only` those whose unloaded gap in the nominal assembly is below
+    TOUCHING_GAP: between the tips of pinion and gear at the radius m N2 / 2, m the module and N2 the
+    gear's teeth.
 
     Parameters
     ----------
@@ -147,7 +150,10 @@ class ContactModel:
         return self.of(replace(self.design, assembly=errors))
 
     def of(self, design: PairDesign) -> "ContactModel":
-        """Return the same bodies for a design that differs only in properties that move no node of theirs.
+        """Return the same bodies for a design that differs only in properties that move no node of
+        theirs.
+
+        Such are assembly errors and deviations of the flanks.
 
         Parameters
         ----------
@@ -189,6 +195,8 @@ def loaded_contact(
 ) -> list[LoadedPosition]:
     """Solve for the contact at all positions and torques, position by position.
 
+    A `known_contact` changes how far contact is searched first, not the results beyond rounding.
+
     Parameters
     ----------
     model : ContactModel
@@ -196,7 +204,7 @@ def loaded_contact(
     positions : Sequence[float]
         In pitches, 0 to 1; 0.5 where phi1 = 0.
     torques : Sequence[float]
-        On the pinion, N m.
+        On the pinion, N m, above 0, in any order.
     options : ContactOptions, optional
         Surfaces and couplings that take part; the default options if None.
     known_contact : KnownContact, optional
@@ -205,7 +213,8 @@ def loaded_contact(
     Returns
     -------
     list[LoadedPosition]
-        Result at each position and torque, in SI units (N, m, rad).
+        Result at each position and torque, in SI units (N, m, rad); all torques of the first position in
+        their order, then those of the next.
 
     Raises
     ------
@@ -245,9 +254,11 @@ def loaded_contact(
 
 @dataclass(eq=False)
 class _PositionSearch:
-    """Facing points at all positions, searched for several positions at once.
+    """Points of the teeth that face each other at all positions, found for several positions at once.
 
-    `ahead`: points by row, for a rotation `limit` (rad).
+    `placements`: unloaded angles phi1, phi2 (rad) of each position; a row is an index of them. `ahead`:
+    points by row, found for a rotation `limit` (rad) of the pinion and kept until a row beyond them or a
+    larger limit is asked for.
     """
 
     model: ContactModel
@@ -258,7 +269,10 @@ class _PositionSearch:
     limit: float = 0.0
 
     def at(self, row: int, limit: float) -> FacingPairs:
-        """Points of a position that a turn by `limit` (rad) would close, and perhaps a few more."""
+        """Return the points of position `row` that a rotation of the pinion by `limit` (rad) would close.
+
+        A few more may be among them. Points of the next AT_ONCE positions are computed together and kept.
+        """
         if row not in self.ahead or limit > self.limit:
             last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
             placements, self.limit = self.placements[row:last], self._search_margin(row, last) * limit
@@ -268,8 +282,11 @@ class _PositionSearch:
         return self.ahead[row]
 
     def _search_margin(self, row: int, last: int) -> float:
-        """Return the factor by which positions up to `last` are searched farther than the position of `row`
-        needs.
+        """Return the factor on `limit` with which the points of positions `row` to `last` - 1 are found
+        together.
+
+        It is SEARCH_MARGIN; with `known_contact` it is KNOWN_SEARCH_MARGIN times the largest known
+        rotation of these positions over that of `row`.
         """
         if self.known_contact is None:
             return SEARCH_MARGIN
@@ -280,8 +297,8 @@ class _PositionSearch:
     def margin(self, row: int) -> float:
         """Return the factor on the expected rotation up to which contact is searched at position `row`.
 
-        It is MARGIN, or the smaller KNOWN_MARGIN from the second position on where `known_contact`, that of a
-        pair that differs little, shows how the rotation changes from position to position.
+        It is MARGIN, or the smaller KNOWN_MARGIN from the second position on where `known_contact`, that
+        of a pair that differs little, shows how the rotation changes from position to position.
         """
         return KNOWN_MARGIN if row and self.known_contact is not None else MARGIN
 
@@ -307,7 +324,11 @@ class _PositionSearch:
 
 @dataclass(frozen=True, eq=False)
 class _PairAtPosition:
-    """`facegear.contact.position.PairAtPosition` of whole gears, at a row of a position search."""
+    """Both whole gears at one position, as `facegear.contact.position.contact_at` takes them.
+
+    `row` is the position's index in the search, `position` in pitches, `unloaded_error` (m) positive
+    where the pinion is ahead.
+    """
 
     position_search: _PositionSearch
     row: int
@@ -320,7 +341,11 @@ class _PairAtPosition:
         return self.position_search.model.design.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
-        """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close."""
+        """Solve for the contact under `torques` (t,) N m, the largest first, of all that a rotation by
+        `limit` closes.
+
+        `limit` (rad) is a rotation of the pinion from the unloaded position.
+        """
         facing_pairs = self.position_search.at(self.row, limit)
         strip = self.position_search.strip(self.row, facing_pairs.teeth)
         return self.position_search.solver.solve(facing_pairs, torques, limit, strip)

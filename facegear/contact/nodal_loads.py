@@ -105,10 +105,12 @@ REACTION_COLUMNS = ("torque_n_m", "tangential_n", "axial_n", "overturning_n_m")
 
 
 def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:
-    """Tabulate the reactions, one row a torque.
+    """Tabulate the mean reactions over the mesh cycle, one row a torque.
 
-    They are the force on the gear along the pinion's tangent, the force on either body along the gear's
-    axis, and the moment about the line through the gear's centre along the pinion's tangent.
+    Sums of f . n over all loads, n the pinion's outward normal in the mesh frame. `tangential_n`: force
+    on the gear along x, the pinion's tangent. `axial_n`: force along the gear's axis that pushes pinion
+    and gear apart. `overturning_n_m`: moment of the forces on the pinion about x through the crossing of
+    the nominal axes.
 
     Parameters
     ----------
@@ -128,13 +130,22 @@ def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]
 
 
 def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
-    """Return tangential force, axial force and overturning moment (3,), N and N m, of all loads."""
+    """Return tangential force, axial force and overturning moment (3,), N, N and N m, at one position and
+    torque.
+
+    Their signs are those of `touching_reactions`; they are sums over all pairs of teeth, 0 without load.
+    """
     parts = [_of_spot(surface, result.position, spot) for spot in result.spots]
     return np.sum(parts, axis=0) if parts else np.zeros(3)
 
 
 def _of_spot(surface: PinionSurface, position: float, spot: Spot) -> Array:
-    """Return the reactions (3,) of the loads of one pair of teeth."""
+    """Return tangential force, axial force and overturning moment (3,), N, N and N m, of one pair of
+    teeth.
+
+    `position` is the mesh position in pitches. Forces are turned from the pinion's body frame to the mesh
+    frame and tilted by the shaft angle error.
+    """
     design = surface.design
     points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
     angle = pinion_angle(design, position) + (spot.tooth - 0.5) * 2.0 * np.pi / design.pinion.teeth

@@ -114,14 +114,14 @@ def passage(position: Array, tooth: Integers) -> Array:
     Parameters
     ----------
     position : (...) array
-        In pitches.
+        Mesh position in pitches, 0 to 1.
     tooth : (...) array of int
-        Number of the pair.
+        Number j of the pair, -2 to 2.
 
     Returns
     -------
     (...) array
-        Position in pitches, rounded to 9 digits.
+        position + tooth, in pitches, rounded to 9 digits so that equal places compare equal.
     """
     return np.round(position + tooth, 9)
 

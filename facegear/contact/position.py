@@ -73,9 +73,12 @@ class PairAtPosition(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Loaded hats of one pair at one position and torque: lattice node, force (N), whether in a `fillet`.
+    """Loaded basis functions (m,) of one pair of teeth at one position and torque.
 
-    `on_pinion` and `on_gear`: the same forces (N) on the nodes of both contact surfaces before refinement.
+    `tooth`: number of the pair, -2..2. `hats` (m,): their nodes on the pinion's refined lattice, `force`
+    (m,) N, `fillet` (m,): whether each presses on a fillet of either gear. `on_pinion` and `on_gear`: the
+    same forces (N) on the nodes of both contact surfaces before refinement, positive where they press on
+    the surface.
     """
 
     tooth: int
@@ -99,21 +102,23 @@ class LoadedPosition:
     torque
         On the pinion, N m.
     ste, unloaded_error
-        Transmission error under load and without, m.
+        Transmission error under load and without, m; their difference is base radius times rotation.
     k_average, k_local
-        Stiffness on the line of action, N/m; k_average is nan where an overlap matters.
+        Stiffness on the line of action, N/m: force over approach, and its derivative with the contact
+        area following the load; k_average is nan where an overlap matters.
     load_share : (5,)
         Of the torque carried by the pairs -2..2.
     fillet_share
         Of the torque carried in fillets.
     overlap
-        By how much teeth whose flanks just touch stand in each other elsewhere, m along the line of action.
+        By how much teeth whose flanks just touch stand in each other elsewhere, m along the line of
+        action.
     residual
-        Of the contact conditions.
+        Largest relative violation of the contact conditions.
     steps
-        Of the solver.
+        Number of steps of the active-set solver.
     candidates, spots
-        Points that may touch, and what they carry.
+        Number of basis functions that may touch, and the loads of each pair that carries any.
     """
 
     position: float
@@ -137,7 +142,7 @@ class LoadedPosition:
 
 
 def first_turn(torques: Sequence[float], base_radius: float, width: float) -> float:
-    """Return a guess of the largest rotation under several torques.
+    """Return a guess of the largest rotation: largest torque / (base radius^2 width STIFFNESS).
 
     Parameters
     ----------
@@ -212,6 +217,7 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
     loads = np.sort(np.array(torques, float))[::-1].copy()
 
     def place_text(torque: float) -> str:
+        """Name the position and a torque (N m) for an error message."""
         return f"position {pair.position:.6f}, torque {torque:g} N m"
 
     for _ in range(ENLARGEMENTS):
@@ -259,7 +265,12 @@ def results_of(
 
 
 def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> list[LoadedPosition]:
-    """Return the result at each torque (t,), in N m, in the order of the contact."""
+    """Return the result at each torque (t,), N m, in the order of `contact`, the largest first.
+
+    Approach is base radius times rotation, k_average = torque / (base radius approach), k_local = 1 /
+    (base radius^2 d rotation / d torque). k_average is nan where the overlap is above UNKNOWN_REFERENCE
+    of the approach.
+    """
     base, teeth = pair.base_radius, contact.teeth
     approach, overlap = base * contact.rotation, base * contact.overlap
     average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)
@@ -300,7 +311,9 @@ def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> 
 
 
 def _spots(contact: PositionContact) -> list[tuple[Spot, ...]]:
-    """Return the loaded basis functions at each torque, tooth by tooth."""
+    """Return a tuple of loaded pairs for each torque, in the order of `contact`; pairs without load are
+    left out.
+    """
     torques, pairs = contact.on_pinion.shape[:2]
     row, on = np.nonzero(contact.force > 0.0)
     node, force, fillet = contact.node[on], contact.force[row, on], contact.fillet[on]

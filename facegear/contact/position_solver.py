@@ -38,16 +38,20 @@ START_GAP, START_WIDTH = 0.6, 0.14
 class SearchStrip(NamedTuple):
     """How wide a strip contact is sought in.
 
+    The rotation t = gap / lever arm closes a function; c is the least t of its pair in its column of the
+    lattice. The function is in the strip if t - c < width (gap * limit - c), with `gap` and `width` of
+    this tuple.
+
     Attributes
     ----------
     gap, width, wider
-        GAP, WIDTH and WIDER.
+        GAP, WIDTH and WIDER, or values in their place.
     begin, begin_width
-        Where the search starts: START_GAP of the rotation that is expected under the first torque, as a part
-        of the limit, and START_WIDTH.
+        Where the search starts: START_GAP of the rotation that is expected under the first torque, as a
+        part of the limit, and START_WIDTH.
     near : (p, n)
-        Nodes of the lattice of each pair whose functions belong to the strip in any case; (0, 0) if none is
-        known to.
+        Nodes of the lattice of each pair whose functions belong to the strip in any case; (0, 0) if none
+        is known to.
     """
 
     gap: float
@@ -149,7 +153,7 @@ def solve_contact(
 
 
 def check_solved(steps: int, residual: float, points: int, place_text: str) -> None:
-    """Raise NotConverged if no solution was found.
+    """Raise NotConverged if no solution was found, or its residual is not below 10 TOLERANCE.
 
     Parameters
     ----------
@@ -184,20 +188,24 @@ def kkt_residual(
 ) -> float:
     """Compute the largest relative violation of balance, no tension, no penetration and complementarity.
 
+    With d = gap + C f - r a it is the largest of |a . f - torque| / torque, -min f / max f, -min d / s,
+    and |d| / s at points with a force; s is the largest |r a| plus the largest |gap| at points with a
+    force.
+
     Parameters
     ----------
     compliance : (n, n) array
-        m/N.
+        C, m/N.
     gap : (n,) array
         m.
     lever_arm : (n,) array
-        m.
+        a, m.
     torque : float
         N m.
     force : (n,) array
-        N.
+        f, N.
     rotation : float
-        rad.
+        r, rad.
 
     Returns
     -------
@@ -281,6 +289,17 @@ class PositionSolver:
         bodies: Sequence[FlankCompliance],
         is_coupled: bool = True,
     ) -> None:
+        """Hand surfaces and compliances of pinion and gear to the compiled solver.
+
+        Parameters
+        ----------
+        cover : Cover
+            Basis functions of the pair.
+        lattices, bodies : Sequence
+            Contact surface and compliance of pinion and gear, in this order.
+        is_coupled : bool
+            Whether a loaded tooth moves its neighbours.
+        """
         pinion, gear = map(_surface, lattices, bodies)
         self._kernel = kernels.PositionSolver(cover.kernel, pinion, gear, is_coupled, NEWTON_STEPS, TOLERANCE)
 
@@ -309,7 +328,8 @@ class PositionSolver:
         return PositionContact(teeth=facing_pairs.teeth, **answer)
 
     def influence(self, facing_pairs: FacingPairs, limit: float) -> Array:
-        """Compute the influence matrix of all basis functions that a rotation of the pinion closes.
+        """Compute the influence matrix of all basis functions whose gap a rotation of the pinion would
+        close.
 
         Parameters
         ----------
@@ -321,7 +341,7 @@ class PositionSolver:
         Returns
         -------
         Array
-            Approach (m, m) of each function by a unit force on each, m/N.
+            Approach (m, m) of each function, of both bodies together, by a unit force on each, m/N.
         """
         return np.asarray(self._kernel.influence(facing_pairs.kernel, limit))
 
@@ -348,12 +368,16 @@ class PositionSolver:
 
 
 def _surface(lattice: Lattice, body: FlankCompliance) -> kernels.Surface:
-    """Return the contact surface of a gear as the compiled kernels take it."""
+    """Return lattice, interpolation and compliance arrays of a gear as the object that the compiled
+    solver takes.
+    """
     interpolation = lattice.interpolation_rows()
     on_tooth, on_neighbours = map(np.ascontiguousarray, (_by_rows(body.loaded_tooth), body.neighbour_blocks))
     return kernels.Surface(lattice.shape, lattice.steps, *interpolation, on_tooth, on_neighbours, body.scale)
 
 
 def _by_rows(symmetric: Array) -> Array:
-    """Return a symmetric matrix row by row, without a copy where it is stored column by column."""
+    """Return a symmetric matrix (n, n) in row order: its transpose, without a copy, if it is stored by
+    columns.
+    """
     return symmetric.T if symmetric.flags.f_contiguous else symmetric

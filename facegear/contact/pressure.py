@@ -49,11 +49,11 @@ NEIGHBOURHOOD = 5
 
 @dataclass(frozen=True, eq=False)
 class LineLoads:
-    """Loaded planes across the pinion's axis, all (m,).
+    """Loaded planes across the pinion's axis at one position and torque, all (m,).
 
-    `line` the row in `ContactLines`, `plane` its column; `length` (m) of the line that the plane stands
-    for; `line_load` (N/m) along the line; `edge` one of INSIDE, PINION_TIP, GEAR_TIP, END; `pressure` (Pa)
-    and its `error` (Pa), nan unless inside; `half_width` (m) of the strip, nan off the flanks.
+    `line` the row in `ContactLines`, `plane` its column; `length` (m) of line that the plane stands for;
+    `line_load` (N/m) along the line; `edge` an index of EDGES; `pressure` (Pa) and its `error` (Pa), nan
+    unless inside; `half_width` (m) of the strip, nan off the flanks.
     """
 
     line: Integers
@@ -203,7 +203,7 @@ def flank_pressure(
 
 
 def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
-    """Number the contact lines by position and tooth."""
+    """Return the row of each contact line by its key, position (pitches) and number of the tooth pair."""
     return {pair: row for row, pair in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
 
 
@@ -230,7 +230,7 @@ def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, 
 
 
 def _by_plane(spots: Sequence[Spot], planes: int) -> Array:
-    """Return the forces (s, n) in N that n planes carry, for each spot."""
+    """Return the forces (s, n), N, that n planes across the pinion's axis carry, for each spot."""
     force = np.zeros((len(spots), planes))
     number = np.repeat(np.arange(len(spots)), [spot.hats.size for spot in spots])
     hats = np.concatenate([spot.hats for spot in spots])
@@ -294,7 +294,7 @@ def _largest_nearby(values: Array, ends: Integers, spot: Integers) -> Array:
 
 
 def _close_gaps(carries: Mask) -> Mask:
-    """Return the loaded planes (s, n), and single unloaded planes between two loaded ones."""
+    """Mark the loaded planes (s, n), and single unloaded planes between two loaded ones."""
     padded_mask = np.pad(carries, ((0, 0), (2, 2)))
     dilated_mask = padded_mask[:, :-2] | padded_mask[:, 1:-1] | padded_mask[:, 2:]
     return np.asarray(dilated_mask[:, :-2] & dilated_mask[:, 1:-1] & dilated_mask[:, 2:])
@@ -317,10 +317,11 @@ def _peak_if_short(force: Array, y: Array) -> Array:
 
 
 def _owners(face: Array, step: float) -> Integers:
-    """Return the plane (s, n) to which each plane's load is added: itself, or the nearest that no end cuts.
+    """Return the plane (s, n) to which each plane's load is added: itself, or the nearest that no end
+    cuts.
 
-    How two planes share their load where an end cuts one is arbitrary: their basis functions almost
-    coincide.
+    A plane is cut if its width `face` (m) is below `step` (m). How two planes share load there is
+    arbitrary: their basis functions almost coincide.
     """
     whole = face > (1 - 1e-9) * step
     count = face.shape[1]
@@ -331,7 +332,9 @@ def _owners(face: Array, step: float) -> Integers:
 
 
 def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
-    """Return the load per width (s, n) N/m, averaged over neighbouring planes."""
+    """Return the load per width (s, n) N/m: weighted `force` (N) over weighted `face` (m) of neighbouring
+    planes.
+    """
     reach, count = weights.size // 2, force.shape[1]
     padded_values = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
     weighted_force, width = (
@@ -342,7 +345,9 @@ def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
 
 
 def _nearest_edge(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
-    """Return for each plane the edge of the flank that its contact reaches, an index of EDGES."""
+    """Return the index in EDGES that the strip of half-width `width` (m) reaches in each plane, tips
+    first; `row` and `planes` index `lines`, `cut` marks planes that take the load of another.
+    """
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )
@@ -359,7 +364,8 @@ contacts."""
 
 
 def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
-    """Compute the row of the refined lattice at which contact lines lie.
+    """Compute the row of the refined lattice at which contact lines lie, linear in the square of the roll
+    angle.
 
     Parameters
     ----------
@@ -371,7 +377,7 @@ def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
     Returns
     -------
     (...) array
-        Row, dimensionless.
+        Row, dimensionless, 0 at the tip edge.
     """
     design = surface.design
     top, bottom = design.pinion_tip_roll, max(pinion.junction_roll(design), 0.0)

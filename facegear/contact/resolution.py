@@ -35,7 +35,7 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
     point.
 
     Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear
-    flank.
+    flank: b = sqrt(4 q R / (pi E*)), q = torque / (2 base radius * narrower face).
 
     Parameters
     ----------
@@ -60,12 +60,14 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
 def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
     """Compute the number of surface nodes of a flank: two an element in both directions.
 
+    The profile's height is taken as the sum of both addenda, the width as that of the face gear.
+
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     sizes : MeshSizes
-        Element sizes.
+        Element sizes before refinement.
     plan : ContactPlan
         Refinement of the elements.
 
@@ -140,17 +142,17 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
-    """Return the number of elements along the face width, not rounded."""
+    """Return the number of unrefined elements along the face gear's width, not rounded."""
     return (design.face_gear.outer_radius - design.face_gear.inner_radius) / sizes.width
 
 
 def node_spacing(sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Compute the distance of the contact surface's nodes across the profile.
+    """Compute the distance of the contact surface's nodes across the profile: half a refined element.
 
     Parameters
     ----------
     sizes : MeshSizes
-        Element sizes.
+        Element sizes before refinement.
     plan : ContactPlan
         Refinement of the elements.
 

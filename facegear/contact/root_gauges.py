@@ -69,8 +69,11 @@ class SectionErrors:
 def section_errors(
     design: PairDesign, body: str, build: Builder, sizes: MeshSizes, material: Material
 ) -> SectionErrors:
-    """Estimate the relative root-stress error of a body's mesh: in the middle plane of the pinion, in five
-    planes of the gear.
+    """Estimate the relative root-stress error of a body's mesh, by plane sections of the mesh and of a
+    finer one.
+
+    It is the largest |tension / reference - 1| of line loads at HEIGHTS, in the middle plane of the
+    pinion or in five planes of the gear: both meshes are built with two elements along the face for it.
 
     Parameters
     ----------
@@ -79,7 +82,7 @@ def section_errors(
     body : str
         `pinion` or `face_gear`.
     build : Builder
-        Function that makes the tooth's mesh.
+        Function that makes the tooth's mesh from design and sizes.
     sizes : MeshSizes
         Element sizes of the mesh.
     material : Material
@@ -105,8 +108,10 @@ def section_errors(
 
 
 def _section(tooth: FeTooth, plane: int) -> tuple[Array, float]:
-    """Return the points (n, 2) of a plane of a tooth, m, and its position along the face; a gear's plane is
-    laid flat.
+    """Return the points (n, 2) of one plane of a tooth, m, and its position along the face, m.
+
+    A pinion's plane has points (x, z) at the position y. A gear's plane is a cylinder, laid flat: points
+    (radius times angle from the tooth's middle, z) at the radius.
     """
     count = int(np.ptp(tooth.surfaces["fillet_right"].nodes[0, :2]))
     points = tooth.nodes[count * plane : count * (plane + 1)]
@@ -118,7 +123,12 @@ def _section(tooth: FeTooth, plane: int) -> tuple[Array, float]:
 
 
 def _beside(tooth: FeTooth, points: Array, pitches: int, radius: float) -> Array:
-    """Return the points of the tooth that is `pitches` further."""
+    """Return the points (n, 2), m, of the tooth that is `pitches` further, of a plane as `_section` gives
+    it.
+
+    A pinion's points are rotated, a gear's are shifted along the first axis by `radius` (m) times the
+    angle.
+    """
     angle = pitches * tooth.pitch
     if tooth.body == "face_gear":
         return points + np.array([radius * angle, 0.0])
@@ -127,8 +137,11 @@ def _beside(tooth: FeTooth, points: Array, pitches: int, radius: float) -> Array
 
 
 def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
-    """Return the largest tension (Pa) of the fillet below the loaded flank for line loads of 1 N/m at
-    HEIGHTS.
+    """Return the largest tension (5,), Pa, of the fillet below the loaded flank for line loads of 1 N/m
+    at HEIGHTS.
+
+    Plane strain in plane number `plane` of the mesh, with TEETH teeth in a row and bore or rim back
+    fixed. The right flank of the middle tooth is loaded along its inward normal.
     """
     points, at = _section(tooth, plane)
     count = len(points)
@@ -156,7 +169,11 @@ def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
 
 
 def _merge_nodes(tooth: FeTooth, count: int, teeth: int) -> Integers:
-    """Return the number of each node of the copies of a section; nodes on shared cuts have one number."""
+    """Number the nodes of `teeth` copies of a section of `count` nodes; nodes on shared cuts have one
+    number.
+
+    Return the number of each node (teeth count,), copy by copy from the left.
+    """
     left, right = (cut[cut < count] for cut in (tooth.cut_left, tooth.cut_right))
     number = np.arange(teeth * count)
     for copy in range(1, teeth):
@@ -165,9 +182,10 @@ def _merge_nodes(tooth: FeTooth, count: int, teeth: int) -> Integers:
 
 
 def _stiffness(nodes: Array, cells: Integers, material: Material) -> sp.csr_matrix:
-    """Return the plane-strain stiffness of quadrilaterals (m, 9) on nodes (n, 2).
+    """Return the plane-strain stiffness (2 n, 2 n), Pa, of 9-node quadrilaterals (m, 9) on nodes (n, 2),
+    m.
 
-    Dof 2 k + i is displacement i of node k.
+    Nodes of a quadrilateral are given as i + 3 j. Dof 2 k + i is displacement i of node k.
     """
     members = cells[:, QUAD]
     mesh = MeshQuad2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(members.T))
@@ -187,7 +205,13 @@ def _lagrange(x: float) -> tuple[Array, Array]:
 
 
 def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
-    """Add a force of 1 N/m into the tooth, normal to its right flank, to `load` (n, 2)."""
+    """Add a force of 1 N/m into the tooth, along the inward normal of its right flank, to `load` (n, 2),
+    in place.
+
+    `nodes` (n, 2): positions, m; `flank`: nodes of the flank from tip to root; `height`: where the force
+    acts, 0 at the flank's tip end to 1 at its root end. The force is spread by the element's quadratic
+    functions.
+    """
     station = height * (flank.size - 1)
     first = min(2 * int(station // 2), flank.size - 3)
     members = flank[first : first + 3]
@@ -199,8 +223,10 @@ def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
 
 
 def _tension(displacement: Array, points: Array, material: Material) -> float:
-    """Return the largest stress (Pa) down a fillet of nodes `points` (n, 2) from their
-    displacements (n, 2).
+    """Return the largest stress (Pa) along a fillet, tension positive, at its surface in plane strain.
+
+    `displacement`, m, and `points`, m, (n, 2) are those of the fillet's nodes, two an element. Stress is
+    taken at two Gauss points an element, and its largest value on a cubic spline through them.
     """
     stiff = material.young_modulus / (1.0 - material.poisson_ratio**2)
     stress = []
@@ -268,10 +294,11 @@ def fillet_sides(body: str) -> tuple[str, str]:
 def root_gauges(
     tooth: FeTooth, material: Material, errors: SectionErrors | None = None
 ) -> tuple[RootGauges, sp.csr_matrix]:
-    """Place gauges on a tooth, and compute their readings from displacements.
+    """Place gauges on both fillets of a tooth, and compute the matrix from displacements to their
+    readings.
 
-    A gauge reads the normal stress (Pa) down the fillet, across its lines, with the surface in plane
-    stress.
+    A gauge reads the normal stress (Pa, tension positive) down the fillet, across its lines, with the
+    surface in plane stress.
 
     Parameters
     ----------
@@ -285,7 +312,8 @@ def root_gauges(
     Returns
     -------
     tuple[RootGauges, sp.csr_matrix]
-        Gauges, and their readings (g, 3 n) by the displacements of the elastic body's n nodes, Pa/m.
+        Gauges, and their readings (g, 3 n) by the displacements of the elastic body's n nodes, Pa/m;
+        gauge (fillet, i, j) of (2, a, b) is row (fillet a + i) b + j.
     """
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     fillets: list[Gauges] = [

@@ -43,7 +43,9 @@ class Placements:
 
     @property
     def angles_and_teeth(self) -> tuple[Array, Array, Array]:
-        """Angles and pair numbers in the form that the geometry takes."""
+        """Angles phi1, phi2 (rad) and pair numbers as floats, each (p,), as `facegear.teeth.separation`
+        takes them.
+        """
         return self.phi1, self.phi2, self.tooth.astype(float)
 
 
@@ -88,8 +90,11 @@ def find_candidates(
 
 
 def cover_of(pair: FlankPair, options: ContactOptions) -> Cover:
-    """Return the covers of the basis functions on the gear's tip edge, the pinion's flank and the pinion's
-    tip edge.
+    """Return the area that must be covered of every basis function of a pair, in the order in which they
+    are numbered.
+
+    The order is the gear's tip edge, the pinion's flank and the pinion's tip edge; without
+    `options.edges` it is the pinion's flank alone.
 
     Parameters
     ----------
@@ -159,7 +164,12 @@ def facing_points(
 def _find_facing_points(
     pair: FlankPair, placements: Placements, depth: float, options: ContactOptions
 ) -> tuple[FacingPoints, Integers]:
-    """Return the points of all pairs of teeth, and the start of each pair's points (p + 1,)."""
+    """Return the points of all p pairs of teeth whose gap may be below `depth` (m), and each pair's start
+    (p + 1,).
+
+    They are integration points of the pinion's flank near the gear, points of the pinion's tip edge where
+    its flank comes near, and points of the gear's tip edge.
+    """
     design, gear = pair.design, pair.gear
     points, flank_count = pair.pinion.facing_points, len(pair.pinion.area)
     first = gear.lattice.shape[1] if options.edges else 0
@@ -183,7 +193,9 @@ def _find_facing_points(
 
 
 def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> EdgePoints:
-    """Points (e,) of the gear's tip edge in p placements; none without edges."""
+    """Return the feet on the pinion of the e points of the gear's tip edge, in p placements; none without
+    edges.
+    """
     columns = pair.gear.lattice.shape[1]
     _, under, values = edge_hats(columns)
     if not options.edges:
@@ -198,9 +210,11 @@ def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> E
 
 
 def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integers]:
-    """Return the integration points near nodes of each pinion tooth whose gap is less than `depth` (m).
+    """Return, for each placement, the numbers of the integration points near nodes with a gap less than
+    `depth` (m).
 
-    The gaps at nodes are interpolated from probes of their elements.
+    Gaps along the pinion's normals are computed at probes, the nodes before refinement, and interpolated
+    to the refined nodes.
     """
     pinion = pair.pinion
     probes, elements = pinion.probes
@@ -221,8 +235,10 @@ def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integer
 
 
 def _beside(nodes: Mask) -> Mask:
-    """Return the cells (p, m - 1, n - 1) between nodes (p, m, n) that have a marked node at or
-    beside them.
+    """Return the cells (p, m - 1, n - 1) between nodes (p, m, n) that have a marked node at most one node
+    away.
+
+    The corners of a cell and the nodes next to them count.
     """
     for axis in (1, 2):
         around = [(1, 1) if axis == dimension else (0, 0) for dimension in range(3)]

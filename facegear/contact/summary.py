@@ -126,7 +126,7 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
 
 
 def _row(torque: float, at: Arrays) -> tuple[float, ...]:
-    """Return one row of the summary from columns of the contact table, position by position."""
+    """Return one row of COLUMNS from the columns of the contact table at one torque, sorted by position."""
     error, average = at["ste_um"], at["k_average_n_per_m"]
     finite_average = average[~np.isnan(average)]
     whole = finite_average.size == average.size
@@ -151,7 +151,9 @@ def _row(torque: float, at: Arrays) -> tuple[float, ...]:
 
 
 def _largest_pressure(pressure: Array, error: Array) -> tuple[float, float]:
-    """Return the largest pressure of all positions with its error (MPa); nan where no position has one."""
+    """Return the largest pressure of all positions, and the error at that position (MPa); nan where none
+    has one.
+    """
     if np.isnan(pressure).all():
         return np.nan, np.nan
     at = int(np.nanargmax(pressure))
@@ -194,7 +196,11 @@ def path_by_position(pressure: Arrays) -> pd.DataFrame:
 
 
 def _centroids(pressure: Arrays, keys: list[str]) -> pd.DataFrame:
-    """Return the axial centre of the forces, mm, for each combination of `keys`."""
+    """Return table `keys` and `path_radius_mm`: force-weighted mean y of the loaded nodes, mm, by
+    combination of keys.
+
+    y runs along the pinion's axis from the gear's axis; `pressure` holds PRESSURE_ARRAYS.
+    """
     force = pressure["force_n"]
     moment = force * 1e3 * pressure["point_m"][:, 1][pressure["node"]]
     frame = pd.DataFrame({key: pressure[key] for key in keys} | {"force": force, "moment": moment})
@@ -205,9 +211,12 @@ def _centroids(pressure: Arrays, keys: list[str]) -> pd.DataFrame:
 
 @dataclass(frozen=True, eq=False)
 class StudiedContact:
-    """Case of a study, or the machine itself (study and point `nominal`), and the results of its contact.
+    """Contact results of one case of a study, or of the machine itself (study and point `nominal`).
 
-    `pair`: the record of its geometry; `ltca`, `by_torque`, `pressure`: as the contact stage stores them.
+    `study`, `point`, `label`: names of the study and the case, and its text in legends. `pair`: the
+    record of the pair's geometry as stored by its stage (it has `unloaded` and `backlash_um`); `ltca`
+    (LTCA_COLUMNS), `by_torque` (COLUMNS and `path_radius_mm`), `pressure` (PRESSURE_ARRAYS): as the
+    contact stage stores them.
     """
 
     study: str
@@ -220,7 +229,9 @@ class StudiedContact:
 
     @property
     def unloaded_path_mm(self) -> float:
-        """Mean radius of the unloaded contact on the drive side, as assembled."""
+        """Mean radius (mm) of the unloaded contact on the drive side: distance from the gear's axis, as
+        assembled.
+        """
         return float(np.mean(self.pair["unloaded"]["drive"]["path_pinion_y_mm"]))
 
     def torque_near(self, torque: float) -> float:

@@ -43,8 +43,8 @@ class ContactSide:
 
 
 def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) -> ContactSide:
-    """Return the surface of a tooth that can touch: its flank and the fillet rows that the other gear's tip
-    can reach.
+    """Return the surface of a tooth that can touch: its flank and the fillet rows that the other gear's
+    tip can reach, with FILLET_MARGIN.
 
     Parameters
     ----------
@@ -133,13 +133,17 @@ def elastic_tooth(
 
 
 def _mirror_nodes(tooth: FeTooth) -> Integers:
-    """Return the node (N,) of the plane that is as far from the other end of the face, for each node."""
+    """Return for each node (N,) the number of its image in the plane as far from the other end of the
+    face.
+    """
     planes = tooth.surfaces["flank_right"].nodes.shape[1]
     return np.arange(len(tooth.nodes)).reshape(planes, -1)[::-1].ravel()
 
 
 def _symmetric(tooth: FeTooth) -> bool:
-    """Whether both halves of the face are mirror images, as those of a pinion without modifications are."""
+    """Whether nodes are mirror images about the middle of the face, as those of a pinion without
+    modifications are.
+    """
     image = tooth.nodes * np.array([1.0, -1.0, 1.0])
     image[:, 1] += tooth.nodes[:, 1].min() + tooth.nodes[:, 1].max()
     return bool(np.abs(tooth.nodes[_mirror_nodes(tooth)] - image).max() <= ROUNDING * np.abs(image).max())

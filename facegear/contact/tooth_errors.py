@@ -43,14 +43,14 @@ def at_places(teeth: Teeth, positions: tuple[Array, Array]) -> Array:
     Parameters
     ----------
     teeth : Teeth
-        Deviation of each tooth.
+        Deviation of each tooth; 0 for None.
     positions : tuple of arrays (...)
         Distances along face and profile, m, as in `DeviationGrid`.
 
     Returns
     -------
     (teeth, ...) array
-        Deviations, m.
+        Deviations, m, in the sign of `DeviationGrid`.
     """
     different = list(dict.fromkeys(teeth))
     values = np.stack([deviation(grid, *positions) for grid in different])
@@ -65,9 +65,12 @@ def loaded_curves(
     teeth: Mapping[Body, Teeth],
     variant: int = 0,
 ) -> dict[Body, Array]:
-    """Compute what the teeth of each gear add to the transmission error over one of its turns, under load.
+    """Compute what the teeth of each gear add to the transmission error over one of its turns, under
+    load.
 
-    Forces of a little more load are differences over neighbouring torques, with no load as one of them.
+    To first order a tooth adds the mean of its deviation over the nodal forces of a little more load.
+    These forces are differences over neighbouring torques, with no load as one of them, interpolated at
+    `torque`.
 
     Parameters
     ----------
@@ -87,7 +90,8 @@ def loaded_curves(
     Returns
     -------
     dict of arrays
-        Transmission error (teeth * positions,) by gear, m.
+        Transmission error (teeth * positions,) by gear, m, evenly over one turn; positive for added
+        material.
     """
     cases = loads["variant"] == variant
     torques, positions = (np.unique(loads[name][cases]) for name in ("torque_n_m", "position"))
@@ -205,8 +209,11 @@ def pair_gaps(design: PairDesign, cycle_positions: Array, planes: int = PLANES) 
 def _tip_edge_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], count: int
 ) -> tuple[Array, ...]:
-    """Return gap, roll (rad) and y on the pinion, radius and depth on the gear (p, count) along its
-    tip edge.
+    """Return gap (m), roll (rad) and y (m) on the pinion, and radius and depth (m) on the gear, each (p,
+    count).
+
+    They are those of `count` points along the gear's tip edge, even in radius, in p placements; the depth
+    is 0.
     """
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
@@ -218,7 +225,11 @@ def _tip_edge_gaps(
 
 
 def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) -> Array:
-    """Compute the transmission error without load; pair j of cycle k consists of tooth k - j of both gears.
+    """Compute the transmission error without load; pair j of cycle k consists of tooth k - j of both
+    gears.
+
+    It is the mean flanks' error plus the largest of (deviation of both teeth - gap) over all pairs and
+    points.
 
     Parameters
     ----------
@@ -232,7 +243,8 @@ def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) ->
     Returns
     -------
     (cycles, positions) array
-        Transmission error, m.
+        Transmission error, m, positive where the gear is ahead (opposite in sign to
+        `LoadedPosition.ste`).
     """
     values = {body: at_places(teeth[body], gaps.positions[body]) for body in BODIES}
     best = np.full((cycles, gaps.mean.size), -np.inf)
@@ -264,7 +276,7 @@ def located_range(design: PairDesign, teeth: Mapping[Body, Teeth], errors: Array
     Returns
     -------
     peak_to_peak, left
-        Largest less smallest value, and by how much the last closer search changed it, m.
+        Largest less smallest value, and by how much the last closer search raised it, m.
     """
     cycles, positions = errors.shape
     peak_to_peak, left = 0.0, 0.0
@@ -288,12 +300,13 @@ def located_range(design: PairDesign, teeth: Mapping[Body, Teeth], errors: Array
 
 
 def orders(error: Array, length: int, count: int) -> Array:
-    """Compute the amplitudes of orders 1, 2, ... of a gear in its transmission error.
+    """Compute the amplitudes of orders 1, 2, ... a turn of a gear in a transmission error over whole
+    turns.
 
     Parameters
     ----------
     error : (cycles, n) array
-        Transmission error, m.
+        Transmission error, m; the cycles are a multiple of `length`.
     length : int
         Number of teeth of the gear.
     count : int
@@ -302,7 +315,7 @@ def orders(error: Array, length: int, count: int) -> Array:
     Returns
     -------
     (count,) array
-        Amplitudes, m.
+        Amplitudes (half of peak to peak), m.
     """
     spectrum = 2.0 * np.abs(np.fft.rfft(error.ravel())) / error.size
     return spectrum[np.arange(1, count + 1) * (len(error) // length)]

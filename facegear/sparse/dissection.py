@@ -25,9 +25,11 @@ DIRECTIONS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 0, -1)]) 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Dof (p,) that are eliminated together, after the fronts `before`, numbers of a list in this order.
+    """Dof (p,) that are eliminated together.
 
-    `cells` (m,) are those of a part that is not cut further; none come with a front that joins others.
+    `before` are the fronts that must be eliminated first, as numbers in the list of all fronts. `cells`
+    (m,) are numbers of the cells of a part that is not cut further; a front of dof that two halves share
+    has none.
     """
 
     dof: Integers
@@ -36,7 +38,8 @@ class Front:
 
 
 def dissection(cells: sp.csr_matrix, centres: Array, kept_dof: Integers) -> list[Front]:
-    """Return the fronts that eliminate all dof but the kept ones, each after those it needs.
+    """Return the fronts that eliminate all dof but the kept ones, each after those it needs (nested
+    dissection).
 
     Dof that share no cell are not coupled. The last front may be empty.
 
@@ -69,6 +72,9 @@ class _DofGroups:
     """
 
     def __init__(self, cells: sp.csr_matrix, kept_dof: Integers) -> None:
+        """Group the free dof of `cells` (m, n) by the set of cells they belong to, told apart by random
+        sums of names.
+        """
         names = np.random.default_rng(0).integers(2**62, size=cells.shape[0])
         of_dof = sp.csr_matrix((np.ones(cells.nnz, np.int64), cells.indices, cells.indptr), cells.shape).T
         free = np.ones(cells.shape[1], dtype=bool)
@@ -82,14 +88,21 @@ class _DofGroups:
         self.cells = cells[:, dof[first]]
 
     def members(self, groups: Integers) -> Integers:
-        """Return the dof of some groups, ascending."""
+        """Return the dof of some groups, by the groups' numbers, as ascending dof numbers of the whole
+        matrix.
+        """
         return np.sort(self._dof[_runs(self._ends[groups] - self.size[groups], self.size[groups])])
 
 
 class _Cells:
-    """Cells by groups of dof, with buffers for the positions where each group first and last occurs."""
+    """Cells by groups of dof, with buffers for the positions where each group first and last occurs.
+
+    `along` (m, directions): positions of the cells along DIRECTIONS, m; `size` (g,): dof of each group;
+    `start`, `count` (m,): each cell's range in `indices`, the numbers of its groups.
+    """
 
     def __init__(self, dof_groups: _DofGroups, centres: Array) -> None:
+        """Prepare positions, groups and buffers of cells at `centres` (m, 3), m."""
         self.along = centres @ DIRECTIONS.T
         self.size = dof_groups.size
         self.start, self.indices = dof_groups.cells.indptr[:-1].astype(np.int64), dof_groups.cells.indices
@@ -97,8 +110,10 @@ class _Cells:
         self.first, self.last = (np.empty(len(self.size), dtype=np.int64) for _ in range(2))
 
     def entries(self, members: Integers, is_eliminated: Mask) -> tuple[Integers, Integers]:
-        """Return the groups of all members in order without those already eliminated, and the
-        member of each.
+        """List the groups of dof of some cells that are not eliminated yet, cell by cell.
+
+        Return the group of each entry, and the position in `members` of its cell. A group is listed once
+        for each cell that it belongs to.
         """
         groups = self.indices[_runs(self.start[members], self.count[members])]
         free = ~is_eliminated[groups]
@@ -126,13 +141,17 @@ class _Cells:
 
 
 def _runs(start: Integers, size: Integers) -> Integers:
-    """Return numbers from each start on, as many as `size` says, one run after the other."""
+    """Concatenate the ranges start[i], ..., start[i] + size[i] - 1; `start` and `size` (n,)."""
     ends = np.cumsum(size)
     return np.arange(size.sum()) + np.repeat(start - ends + size, size)
 
 
 def _dissect(cells: _Cells, members: Integers, is_eliminated: Mask, fronts: list[Front]) -> int:
-    """Append the fronts of some cells, and return the number of the last one."""
+    """Append the fronts of the cells `members`, halves first, and return the number of the last one.
+
+    Dof in these fronts are marked in `is_eliminated`. A part with at most LEAF free dof, with one cell,
+    or that no plane divides becomes one front.
+    """
     inside = np.unique(cells.entries(members, is_eliminated)[0])
     large = cells.size[inside].sum() > LEAF and members.size > 1
     halves = _halves(cells, members, is_eliminated) if large else None
@@ -150,10 +169,11 @@ def _dissect(cells: _Cells, members: Integers, is_eliminated: Mask, fronts: list
 def _halves(
     cells: _Cells, members: Integers, is_eliminated: Mask
 ) -> tuple[Integers, Integers, Integers] | None:
-    """Return two halves and the groups they share, by the plane with the lowest ratio of shared dof to
-    balance.
+    """Cut the cells `members` by the plane with the lowest ratio of shared dof to balance.
 
-    None if no plane separates the cells.
+    The cost is the number of dof on the plane over (share of dof in the smaller half) ** BALANCE, for
+    planes normal to DIRECTIONS between any two cells. Return the cells of both halves and the groups of
+    dof they share; None if no plane leaves at least SMALLEST in the smaller half.
     """
     best: tuple[float, Integers, int] | None = None
     for along in cells.along.T:

@@ -81,7 +81,10 @@ class Step:
 
 
 def _block(memory: Array, start: int, rows: int, columns: int) -> Array:
-    """Return a matrix in memory, its columns contiguous."""
+    """Return the view (rows, columns) of `memory` from position `start` on, stored column by column.
+
+    A negative start counts from the end of the memory.
+    """
     start %= max(memory.size, 1)
     return memory[start : start + rows * columns].reshape((rows, columns), order="F")
 
@@ -148,8 +151,10 @@ def schur_complement(
 def _front_entries(
     parts: Sequence[Part], number: Integers, fronts: list[Front], cells: int
 ) -> Iterator[list[Entries]]:
-    """Yield the entries of the small matrices for each front, their unknowns by position in the elimination
-    order.
+    """Yield for each front the entries of all parts' small matrices in its cells, one Entries a part.
+
+    `number` (n,) gives the position of each dof in the elimination order; the columns of each
+    `transformation` are renumbered by it. `cells` is the number of cells.
     """
     group = np.empty(cells, dtype=np.int64)
     for front_number, front in enumerate(fronts):
@@ -170,11 +175,12 @@ def _front_entries(
 def _steps(
     cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept_count: int, read: sp.csc_matrix
 ) -> tuple[list[Step], int]:
-    """Return the steps of all fronts, and the size of their memory.
+    """Return the steps of all fronts, and the size of their memory in numbers.
 
-    The boundary of a step consists of dof that are eliminated after it or kept, and of readings. `read`
-    (g, n): readings by the dof in the order of elimination. The last front is coupled to all kept dof and
-    readings.
+    `cells` (cells, n) marks the dof of each cell, `number` (n,) gives each dof's position in the
+    elimination order, the `kept_count` kept dof last. The boundary of a step consists of dof that are
+    eliminated after it or kept, and of readings, numbered after all dof. `read` (g, n): readings by the
+    dof in the order of elimination. The last front is coupled to all kept dof and readings.
     """
     steps: list[Step] = []
     on_first = _on_first_stack(fronts)
@@ -204,7 +210,9 @@ def _steps(
 
 
 def _on_first_stack(fronts: list[Front]) -> Mask:
-    """Mark the fronts on the first of two stacks, so that those before a front are on the other."""
+    """Mark the fronts on the first of two stacks, so that the fronts that a front takes from are on the
+    other one.
+    """
     first = np.ones(len(fronts), dtype=bool)
     for front_number in reversed(range(len(fronts))):
         first[list(fronts[front_number].before)] = not first[front_number]
@@ -219,10 +227,12 @@ def _sum_up(
     row_of: Integers,
     parts: tuple[Array, Array, Array],
 ) -> None:
-    """Fill a front from the small matrices and from the rests of the fronts before it; lower triangles alone.
+    """Fill a front from the small matrices and from the rests of the fronts before it; lower triangles
+    alone.
 
-    `row_of` is filled with the row of each dof in the front, by its position in the elimination order, -1
-    if none.
+    `parts`: views of the memory to fill, the pivot block (p, p), the block (m, p) below it and the rest
+    (m, m), N/m. `row_of` (n + g,) is filled with the row of each dof and reading in the front, by its
+    position in the elimination order, -1 if none.
     """
     row_of[:] = -1
     row_of[step.pivots] = np.arange(step.size)
@@ -238,14 +248,22 @@ def _sum_up(
 
 
 def _add_readings(read: sp.csc_matrix, dof: slice, rows: Integers, block: Array) -> None:
-    """Add the readings by consecutive dof to a block whose rows are the readings' rows."""
+    """Add the readings of consecutive dof to a block, in place.
+
+    `read` (g, n): readings by dof in the elimination order; `dof`: the columns of the block; `rows` (g,):
+    row of the block for each reading.
+    """
     at = slice(read.indptr[dof.start], read.indptr[dof.stop])
     columns = np.repeat(np.arange(dof.stop - dof.start), np.diff(read.indptr[dof.start : dof.stop + 1]))
     block[rows[read.indices[at]], columns] += read.data[at]
 
 
 def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
-    """Condense a front onto `rest`, of which only the lower triangle is used; all in place."""
+    """Condense a front: subtract below @ inverse(pivot) @ below.T from `rest`, lower triangle only.
+
+    All three are changed in place: `pivot` (p, p) into its Cholesky factor L, `below` (m, p) into below @
+    inverse(L).T. Raise FacegearError if the pivot block is not positive definite.
+    """
     if not pivot.size:
         return
     _, error_code = lapack.dpotrf(pivot, lower=1, clean=0, overwrite_a=1)
@@ -257,6 +275,8 @@ def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
 
 
 def _clear(square: Array) -> None:
-    """Zero the lower triangle, and of the upper one no more than a block."""
+    """Zero the lower triangle of a square array in place, and of the upper one no more than BLOCK
+    columns.
+    """
     for start in range(0, len(square), BLOCK):
         square[start:, start : start + BLOCK] = 0.0

@@ -22,8 +22,11 @@ AT_ONCE = 128
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Part of the large matrix: the sum of transformation[r].T @ s @ transformation[r] over m small matrices
-    s.
+    """Part of a large symmetric matrix: sum of transformation[r].T @ s @ transformation[r] over m small
+    matrices s.
+
+    Small matrices are computed only when they are asked for. A cell is the smallest unit that nested
+    dissection divides: a group of small matrices, such as a finite element and the ones it was cut into.
 
     Attributes
     ----------
@@ -61,6 +64,9 @@ class Part:
         """
 
         def weighted_matrices(numbers: Integers) -> Array:
+            """Return the weighted small matrices (k, a, a) of `numbers` (k,), which count within the
+            selection.
+            """
             return weights[numbers][:, None, None] * self.matrices(members[numbers])
 
         return Part(weighted_matrices, self.rows[members], self.transformation, cell)
@@ -84,7 +90,7 @@ class Part:
 
 
 def cell_unknowns(parts: Sequence[Part], cells: int) -> sp.csr_matrix:
-    """Return a matrix with an entry for each unknown on which a cell depends.
+    """Return a matrix with an entry for each unknown on which a cell's small matrices depend.
 
     Parameters
     ----------
@@ -107,7 +113,8 @@ def cell_unknowns(parts: Sequence[Part], cells: int) -> sp.csr_matrix:
 
 
 def in_turn(part: Part, group: Integers, count: int) -> Iterator[tuple[Array, Integers]]:
-    """Yield the small matrices group by group.
+    """Yield the small matrices of a part group by group, from group 0 to `count` - 1; a group may have
+    none.
 
     Each small matrix is computed once, AT_ONCE or more together.
 
@@ -123,7 +130,7 @@ def in_turn(part: Part, group: Integers, count: int) -> Iterator[tuple[Array, In
     Yields
     ------
     tuple of arrays
-        Small matrices (k, a, a), N/m, and their rows (k, a).
+        Small matrices (k, a, a), N/m, of one group, and their rows (k, a) of `part.transformation`.
     """
     number = group[part.cell]
     order = np.argsort(number, kind="stable")
@@ -142,7 +149,8 @@ BLOCK = 256
 
 
 def cholesky(matrix: Array, overwrite: bool = False) -> Array:
-    """Factorise a symmetric positive definite matrix.
+    """Factorise a symmetric positive definite matrix as L @ L.T (LAPACK dpotrf); its lower triangle is
+    read.
 
     Parameters
     ----------
@@ -154,7 +162,7 @@ def cholesky(matrix: Array, overwrite: bool = False) -> Array:
     Returns
     -------
     (n, n) array
-        Lower factor, square root of the unit.
+        Lower factor L with zeros above, square root of the unit.
 
     Raises
     ------
@@ -185,12 +193,12 @@ def inverse(factor: Array) -> Array:
 
 
 def solve_factored(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
-    """Solve a system given by its lower factor.
+    """Solve L @ L.T @ x = rhs with the lower factor L of `cholesky`.
 
     Parameters
     ----------
     factor : (n, n) array
-        Lower factor, any unit.
+        Lower factor L, any unit.
     rhs : (n, m) array
         Right-hand sides, any unit.
     overwrite : bool
@@ -205,12 +213,12 @@ def solve_factored(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
 
 
 def forward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
-    """Solve with the lower factor of a matrix: multiply by its inverse.
+    """Multiply by the inverse of a lower factor L: solve L @ x = rhs by forward substitution.
 
     Parameters
     ----------
     factor : (n, n) array
-        Lower factor, any unit.
+        Lower factor L, any unit.
     rhs : (n, m) array
         Right-hand sides, any unit.
     overwrite : bool
@@ -225,12 +233,13 @@ def forward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
 
 
 def backward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
-    """Multiply by the inverse of a lower factor's transpose.
+    """Multiply by the inverse of a lower factor's transpose: solve L.T @ x = rhs by backward
+    substitution.
 
     Parameters
     ----------
     factor : (n, n) array
-        Lower factor, any unit.
+        Lower factor L, any unit.
     rhs : (n, m) array
         Right-hand sides, any unit.
     overwrite : bool
@@ -322,7 +331,8 @@ Solve = Callable[[Array], Array]
 
 
 def solver(matrix: sp.spmatrix) -> Solve:
-    """Factorise a symmetric positive definite matrix.
+    """Factorise a sparse symmetric positive definite matrix once (SuperLU), to solve for many right-hand
+    sides.
 
     Parameters
     ----------
@@ -332,7 +342,7 @@ def solver(matrix: sp.spmatrix) -> Solve:
     Returns
     -------
     Solve
-        Function that solves for right-hand sides (n,) or (n, m).
+        Function that returns the solutions for right-hand sides (n,) or (n, m), in their shape.
     """
     factor = splu(
         matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}

@@ -22,7 +22,8 @@ to 450 N m on the paper's pair, so that stress at small torques would be underes
 class Scale:
     """Rule by which values at the torques `torques` (t,), N m, rising, continue to others.
 
-    `exponents` (t + 1,): below the first torque, between each two neighbours, beyond the last.
+    `exponents` (t + 1,), dimensionless: power of the torque that values go with below the first torque,
+    between each two neighbours, and beyond the last.
     """
 
     torques: Array
@@ -89,9 +90,10 @@ class Scale:
 
 
 def scale(torques: Array, largest: Array, lone: float, beyond: float) -> Scale:
-    """Derive the exponents from largest values, between SMALLEST and LARGEST.
+    """Derive the exponents of torque from largest values: d log value / d log torque between neighbours.
 
-    Below the first torque the exponent is FALLS less than that of the first two torques.
+    They are clipped to SMALLEST and LARGEST. Below the first torque the exponent is FALLS less than that
+    of the first two torques, but not below SMALLEST.
 
     Parameters
     ----------
@@ -142,7 +144,8 @@ class ContactPressure:
     def at(self, torque: float) -> float:
         """Interpolate the pressure at a torque.
 
-        A power of the torque between those solved and below them; beyond them its root, as in line contact.
+        A power of the torque between those solved and below them; beyond them its square root, as in line
+        contact.
 
         Parameters
         ----------

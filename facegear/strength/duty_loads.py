@@ -27,19 +27,19 @@ STEEP = 10.0
 
 
 def passage_forces(largest: Array) -> Array:
-    """Return the largest force in every mesh cycle and the one after it.
+    """Return the largest force during each passage of a tooth: of a mesh cycle and the one after it.
 
     A tooth is in mesh for about two mesh cycles; the last one is followed by the first.
 
     Parameters
     ----------
     largest : (cycles, flanks) array
-        Largest force of each mesh cycle, N, not negative.
+        Largest force of each mesh cycle on each flank, N, not negative.
 
     Returns
     -------
     (cycles, flanks) array
-        Largest force of each passage, N.
+        Largest force of each passage, by the cycle in which it begins, N.
     """
     return np.maximum(largest, np.roll(largest, -1, axis=0))
 
@@ -47,19 +47,19 @@ def passage_forces(largest: Array) -> Array:
 def hardest_tooth(passages: Array, tooth_numbers: Integers) -> list[Array]:
     """Return the forces that the hardest loaded tooth of a body meets in each of its meshes.
 
-    The sum of the forces to the power STEEP decides which tooth that is.
+    The sum of the forces over all meshes to the power STEEP decides which tooth that is.
 
     Parameters
     ----------
     passages : (cycles, meshes) array
-        Forces on one flank, N.
+        Force of the passage that begins with each mesh cycle, on one flank, N.
     tooth_numbers : (cycles, meshes) array of int
-        Index of the tooth that is in mesh.
+        Index of the body's tooth that is in mesh.
 
     Returns
     -------
     list of (n,) array
-        Forces in each mesh, N.
+        Forces of that tooth's passages through each mesh, N.
     """
     scale = passages.max()
     harm = np.bincount(
@@ -196,7 +196,11 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
 
 
 def spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
-    """Yield body, gear, flank, mesh, fraction and force of every class of passages.
+    """Yield body, gear, flank, mesh, fraction and force (N) of every class of passages.
+
+    Where runouts turn, the classes are those of the hardest loaded tooth, over all cycles until the same
+    two teeth meet again; otherwise those of all passages. Forces up to NO_LOAD of the largest are left
+    out.
 
     Parameters
     ----------

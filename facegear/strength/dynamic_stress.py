@@ -47,7 +47,12 @@ def dynamic_stress_table(
 def _row(
     mesh: str, force: Array, positions: Array, base_radius: float, contacts: Mapping[str, FlankContact]
 ) -> tuple[str | float | bool, ...]:
-    """Return the row of one mesh: forces, dynamic factor, stress and pressure."""
+    """Return the row of DYNAMIC_STRESS_COLUMNS of one mesh: forces, dynamic factor, stress and pressure
+    in MPa.
+
+    `force` (n,), N, is negative on the back flank; `positions` (n,), in pitches, are those of the loaded
+    flank; `contacts` go by flank. The dynamic factor is the largest over the mean magnitude of the force.
+    """
     mean, max_force = float(np.abs(force).mean()), float(np.abs(force).max())
     by_flank = {"drive": np.maximum(force, 0.0), "back": np.maximum(-force, 0.0)}
     loaded_flanks = {flank: part for flank, part in by_flank.items() if part.any()} or {
@@ -84,12 +89,13 @@ def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     sweep : DataFrame
-        Long table of a sweep.
+        Long table of a sweep: columns quantity, body_or_mesh, direction, speed_rpm, class and value; rows
+        with quantity `largest_elastic_force_n` are used.
 
     Returns
     -------
     DataFrame
-        Columns as FORCE_COLUMNS.
+        Columns as FORCE_COLUMNS; `motion` is `sweep` and the direction.
     """
     rows = sweep[sweep["quantity"] == "largest_elastic_force_n"].reset_index(drop=True)
     worst = first_largest_rows(rows, "value", ["direction", "speed_rpm"])
@@ -99,22 +105,25 @@ def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
 
 
 def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
-    """Select the mesh with the largest force on every stable stretch of a branch.
+    """Select the mesh with the largest force on every stable stretch of a branch, at the given speeds it
+    covers.
 
-    Forces are interpolated linearly between the points of a branch. A stretch has both its ends. Speeds of
-    points that differ from one of `speeds` by rounding are that one.
+    Forces are interpolated linearly between the points of a branch. A stretch lies between two
+    neighbouring stable points and has both its ends. Speeds of points that differ from one of `speeds` by
+    rounding are that one.
 
     Parameters
     ----------
     branches : DataFrame
-        Table of branches by point and mesh.
+        Table of branches by point and mesh: columns branch, period, point, mesh, speed_rpm, peak_force_n,
+        stable.
     speeds : (n,) array
         Speeds, rpm.
 
     Returns
     -------
     DataFrame
-        Columns as FORCE_COLUMNS.
+        Columns as FORCE_COLUMNS; `motion` is `branch` and its number, `class` the period as `period-2`.
     """
     forces = []
     for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
@@ -138,7 +147,9 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
 
 
 def _without_rounding(values: Array, exact: Array) -> Array:
-    """Values (m,) with the nearest of `exact` (n,) in the place of those that differ from it by rounding."""
+    """Return values (m,), each replaced by the nearest of `exact` (n,) if it differs from it by rounding
+    alone.
+    """
     nearest = exact[np.abs(values[:, None] - exact).argmin(axis=1)]
     return np.where(np.abs(values - nearest) <= ROUNDING * nearest, nearest, values)
 

@@ -32,6 +32,9 @@ class TensionHistory:
     """
 
     def __init__(self, root: RootStress) -> None:
+        """Tabulate the largest stress over gauges and teeth by solved torque and position in the mesh
+        cycle.
+        """
         within, position_of = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
         largest = np.array([down_the_fillet(stress).max(axis=(1, 2, 3)) for stress in root.stress])
         by_position = np.array(
@@ -91,12 +94,16 @@ class FlankContact:
 
     @cached_property
     def tension(self) -> dict[str, Callable[[float], float]]:
-        """Largest tension (Pa) of each body over the passage at a torque (N m)."""
+        """Function of each body that gives its largest tension (Pa) over the passage at a torque (N m) on
+        the pinion.
+        """
         return {body: largest_tension(root) for body, root in self.roots.items()}
 
     @cached_property
     def history(self) -> dict[str, TensionHistory]:
-        """Largest tension of each body at torques and places in the mesh cycle."""
+        """Function of each body that gives its largest tension (Pa) at torques and positions in the mesh
+        cycle.
+        """
         return {body: TensionHistory(root) for body, root in self.roots.items()}
 
     def is_solved(self, torque: float) -> bool:
@@ -189,7 +196,10 @@ def largest_pressure(loads: Iterable[tuple[FlankContact, float]]) -> float:
 
 
 def met_by(duty: FlankDuty, gears: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the gears and flanks of the contacts of a rated flank.
+    """Return the gears and flanks of the contacts that a rated flank takes part in.
+
+    A face gear's flank has its own gear's contacts, a pinion's those of all gears; loads of flank `each`
+    count on both flanks.
 
     Parameters
     ----------
@@ -221,7 +231,7 @@ def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
     Returns
     -------
     RootStress
-        Root stress of the rated gear in that contact.
+        Root stress of the rated gear (`duty.gear`) in that contact.
     """
     roots = [contact.roots[duty.gear] for contact in contacts]
     return max(roots, key=lambda root: root.at_torque(duty.largest).max())
@@ -229,6 +239,9 @@ def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
 
 def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
     """Combine the contacts by their largest values at every torque that one of them has solved.
+
+    The error is that of the contact with the largest pressure; edge load, edge length and fillet share
+    are the largest of all contacts, each by itself.
 
     Parameters
     ----------
@@ -255,7 +268,9 @@ def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
 
 
 def _at_torques(pressure: ContactPressure, torques: Array) -> ContactPressure:
-    """Interpolate the pressure at more torques (n,) N m than were solved."""
+    """Return the values at other torques (n,), N m, interpolated between the solved ones by the rules of
+    each field.
+    """
     if np.array_equal(pressure.torques, torques):
         return pressure
     edges = np.array([pressure.edge_at(torque) for torque in torques])

@@ -67,6 +67,8 @@ class FlankDuty:
 def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool) -> FlankDuty:
     """Return the loads of the teeth of one gear where the duty cycle gives one torque a bin.
 
+    The cycles of a bin are turns * speed * time.
+
     Parameters
     ----------
     gear : str
@@ -74,7 +76,7 @@ def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool
     duty : Sequence[DutyBin]
         Bins of the duty cycle.
     turns : float
-        Loads of a tooth for one turn of the pinion, dimensionless number.
+        How often a tooth is loaded during one turn of the pinion, dimensionless number.
     both_ways : bool
         Whether both flanks carry every load.
 
@@ -100,12 +102,13 @@ def machine_duty(
 ) -> tuple[FlankDuty, ...]:
     """Return the loads of every flank that carries load in a machine, each from its own meshes.
 
-    A tooth meets every mesh of its body once a turn.
+    A tooth meets every mesh of its body once a turn of the body: cycles are its turns in the bin times
+    `fraction`.
 
     Parameters
     ----------
     spectrum : DataFrame
-        Columns as DUTY_SPECTRUM_COLUMNS.
+        Columns as DUTY_SPECTRUM_COLUMNS; bins count from 1.
     duty : Sequence[DutyBin]
         Bins of the duty cycle.
     ratio : float
@@ -217,7 +220,10 @@ class BendingLimits:
 
 @dataclass(frozen=True)
 class MaterialCard:
-    """A material with its elasticity and the limits its source gives; those it does not give are None."""
+    """A material with its elasticity and the limits its source gives; those it does not give are None.
+
+    `name`, `source` and `grade` are texts; `young_modulus` in Pa.
+    """
 
     name: str
     source: str
@@ -258,10 +264,10 @@ def damage(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> A
 
 
 def reliability(total: float, shape: float | None) -> float:
-    """Compute the share of the gears that survive, by a Weibull distribution of lives from 0.
+    """Compute the share of the gears that survive, LIMIT_RELIABILITY ** (total ** shape): Weibull from 0.
 
-    Sum 1 is the life that LIMIT_RELIABILITY of the gears reach. Below every limit more than LIMIT_RELIABILITY
-    survive, but the distribution of lives does not say how many.
+    Sum 1 is the life that LIMIT_RELIABILITY of the gears reach. Below every limit more than
+    LIMIT_RELIABILITY survive, but the distribution of lives does not say how many.
 
     Parameters
     ----------

@@ -33,7 +33,8 @@ from facegear.teeth.mesh_sizes import MeshSizes
 def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> RootStress:
     """Superpose the root stress of one body under the loads of stage contact on its flank.
 
-    Forces on its fillet are left out: the gauges below would read the dent.
+    Forces on its fillet are left out: the gauges below would read the dent. The teeth read run from the
+    one before the first loaded tooth to the one after the last.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> Roo
     loads : Arrays
         Arrays of nodal loads (LOAD_ARRAYS).
     variant : int
-        Index of the variant of assembly errors.
+        Index of the variant of assembly errors in `loads`.
 
     Returns
     -------
@@ -77,7 +78,7 @@ FIRST = 16
 
 @dataclass(frozen=True, eq=False)
 class PassingTension:
-    """Root stress of one body by the forces on its flank.
+    """Root stress of one body by the forces on its flank, ready to be superposed for many sets of forces.
 
     Attributes
     ----------
@@ -86,9 +87,11 @@ class PassingTension:
     flank_nodes
         Number of nodes of the contact surface, before refinement, that belong to the flank.
     readings : (2 d + 1, 2, a, b, c)
-        Readings of `FlankCompliance`, by fillet, gauges down it and along the face.
+        Readings of `FlankCompliance`, Pa/N, by distance of the tooth, fillet, a gauges down it, b along
+        the face and loaded node.
     bounds : (2, 2 d + 1, c, 2 b)
-        Largest stress (Pa) in a plane of a fillet by a unit force on a node, and by one that pulls.
+        Largest stress (Pa, 0 at least) in each plane of both fillets, by a unit force on a node that
+        pushes into the surface (index 0), and by one that pulls (1).
     """
 
     body: str
@@ -146,9 +149,13 @@ class PassingTension:
         first_rows = np.arange(teeth.size)[:, None] * (torques.size * count)
 
         def force(row: int) -> sp.csr_matrix:
+            """Return the forces (teeth positions, c), N, at the torque of index `row`, tooth by tooth."""
             return every[(first_rows + np.arange(row * count, (row + 1) * count)).ravel()]
 
         def largest(torque: float) -> float:
+            """Return the largest stress (Pa) at a torque (N m), with forces interpolated between the
+            solved torques.
+            """
             first = int(np.clip(np.searchsorted(torques, torque) - 1, 0, max(torques.size - 2, 0)))
             near = range(first, min(first + 2, torques.size))
             ends = [force(row) for row in near]
@@ -169,9 +176,12 @@ class PassingTension:
         return largest
 
     def _largest(self, force: sp.csr_matrix, teeth: Integers, bounds: Array, splined: bool) -> float:
-        """Largest stress of the gauges, or of the splines through them, by forces (teeth positions, c) N.
+        """Return the largest stress (Pa) at the gauges, or with `splined` of the splines down the fillet
+        through them.
 
-        No stress is larger than `bounds`, by tooth, position and plane as `_stress_bounds` returns them.
+        `force` (teeth positions, c): N on the nodes of the loaded `teeth`. No stress is larger than
+        `bounds`, by tooth, position and plane as `_stress_bounds` returns them; places are superposed by
+        falling bound until the rest cannot exceed the largest found.
         """
         left, largest = bounds.ravel().copy(), -np.inf
         while (above := np.flatnonzero(left > largest)).size:
@@ -188,7 +198,11 @@ class PassingTension:
 
 
 def _bounds(stress: Array) -> Array:
-    """Largest, 0 at least, (c, 2 b) of stresses (2, a, b, c) at the gauges and at points between them."""
+    """Return the largest stress down each plane of both fillets, 0 at least, (c, 2 b), by unit forces on
+    c nodes.
+
+    `stress` (2, a, b, c): stress at the gauges by each force, Pa/N; splines between gauges count, too.
+    """
     down = np.moveaxis(stress, 1, -1)[..., None]
     between = down_the_fillet(down)[..., 0].max(axis=-1)
     largest = np.maximum(np.maximum(stress.max(axis=1), between), 0.0)
@@ -196,8 +210,11 @@ def _bounds(stress: Array) -> Array:
 
 
 def _stress_bounds(force: sp.csr_matrix, teeth: Integers, bounds: Array) -> Array:
-    """Bounds (t, positions, 2 b) of the stress of all teeth from the one before the first of the loaded
-    `teeth` to the one after the last, by forces (teeth positions, c) N.
+    """Return upper bounds (t, positions, 2 b), Pa, of the stress in each plane of both fillets, of all
+    teeth read.
+
+    The t teeth run from the one before the first of the loaded `teeth` to the one after the last. `force`
+    (teeth positions, c): N on nodes; `bounds` as in PassingTension.
     """
     reach, forces = bounds.shape[1] // 2, force.toarray().reshape(teeth.size, -1, force.shape[1])
     pushes, pulls = np.maximum(forces, 0.0), np.maximum(-forces, 0.0)
@@ -225,7 +242,8 @@ def coarser_roots(
 ) -> dict[Body, RootStress]:
     """Solve root stress with twice the distance of planes along the face.
 
-    At the smallest and the largest torque, and the positions where stress is largest at either.
+    It is solved at the smallest and the largest torque, at the positions where tension below the loaded
+    flank is largest at either.
 
     Parameters
     ----------
@@ -265,7 +283,8 @@ def coarser_roots(
 def face_error(root: RootStress, coarser: RootStress) -> float:
     """Estimate the relative error of the largest tension by Richardson's rule.
 
-    The difference at the places where stress is near its largest counts, not that of the largest values:
+    It is SAFETY |coarse - fine| / (2^ORDER - 1) over the largest tension, the worst of all torques. The
+    difference at the places where stress is near its largest counts, not that of the largest values:
     these lie at gauges, which stand elsewhere on another mesh, and may agree by chance.
 
     Parameters
@@ -300,7 +319,9 @@ def _along_face(stress: Array) -> Array:
 
 
 def _positions(root: RootStress) -> Array:
-    """Return the position in the pitch (n,) of each place of the passage."""
+    """Return the mesh position in pitches (n,), 0 to 1, of each place of the passage, rounded to 9
+    digits.
+    """
     return np.round(root.passage % 1.0, 9)
 
 

@@ -39,7 +39,8 @@ Factor = Callable[[Array], Array]
 class ContactPose:
     """Pose of the unloaded contact of a flank.
 
-    `path`: position along the pinion, m. `angle`: error of the shaft angle, rad.
+    `path`: radius of its path, the position along the pinion from the gear's axis, m. `angle`: error of
+    the shaft angle, rad.
     """
 
     path: float
@@ -47,9 +48,10 @@ class ContactPose:
 
 
 def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: ContactPose) -> Factor:
-    """Return the ratio of a quantity at one contact pose to that at another.
+    """Return the ratio of a quantity at one contact pose to that at another, as a function of torque.
 
-    Torques beyond the surface's count as its last, paths beyond its nodes as the nearest.
+    It is interpolated by a spline of logarithms over the surface's torques. Torques beyond the surface's
+    count as its last, paths beyond its nodes as the nearest.
 
     Parameters
     ----------
@@ -65,8 +67,8 @@ def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: C
     Returns
     -------
     Factor
-        Ratio at torques (n,) N m on the pinion; nan where the surface does not know the quantity, for example
-        pressure where edges carry all.
+        Ratio at torques (n,) N m on the pinion; nan where the surface does not know the quantity, for
+        example pressure where edges carry all.
     """
     if quantity not in surface.values:
         return lambda torque: np.full(torque.shape, np.nan)
@@ -86,6 +88,9 @@ def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: C
 
 def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> FlankContact:
     """Return a contact whose stresses are multiplied by factors of the torque.
+
+    Pressure and its error have the factor of PRESSURE, root stress of a body that of ROOTS. Loads on
+    edges and in fillets stay.
 
     Parameters
     ----------
@@ -115,6 +120,9 @@ def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> Flank
 
 def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, AnyArray]:
     """Return the root stress of one contact as arrays that are stored beside those of others.
+
+    Names begin with `contact` and the number: torque_n_m, and of each body passage and stress_pa. The
+    arrays along_m, angle_rad and error of each body are common to all contacts.
 
     Parameters
     ----------
@@ -227,7 +235,8 @@ class PosedContacts:
     ) -> LoadStresses:
         """Compute the stresses of every load of a rated flank in the loaded position of its bin.
 
-        Where several meshes load the flank, the largest stress counts.
+        The stress of the mesh's contact at rest is multiplied by `stress_ratio` from its pose to that of
+        the bin. Where several meshes load the flank, the largest stress counts.
 
         Parameters
         ----------
@@ -294,7 +303,8 @@ def duty_contact_poses(table: "pd.DataFrame") -> dict[tuple[int, str, str], Cont
     Parameters
     ----------
     table : DataFrame
-        Table of stage duty_poses.
+        Table of stage duty_poses: columns bin (from 1), mesh, flank, unloaded_path_mm and
+        shaft_angle_error_deg.
 
     Returns
     -------

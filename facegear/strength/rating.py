@@ -86,7 +86,9 @@ class FailureRating:
 
     @property
     def reason(self) -> str:
-        """Reason for red: the damage with the life that follows, or the safety that lacks; empty if green."""
+        """Reason for red, empty if green: damage and life, or the safety with that required, or an
+        immediate break.
+        """
         if self.verdict == "green":
             return ""
         harm = float(self.damage.sum())
@@ -99,7 +101,9 @@ class FailureRating:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Remarks on loads whose stress the rating method does not know."""
+        """Remarks on load that the stress leaves out: on tip edges (for pitting, from EDGE on) and in
+        fillets.
+        """
         caveats = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
             caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
@@ -127,8 +131,9 @@ def rate(
 ) -> list[FailureRating]:
     """Rate bending and pitting of every loaded flank.
 
-    Each is rated by the contact analysis and by the cylindrical standard. The standard alone judges pitting
-    where no `pressure` away from edges is known.
+    Each is rated by the contact analysis and by the cylindrical standard: bending by `finite elements`
+    and, for pinions, `ISO 6336-3`; pitting by `contact analysis` and `ISO 6336-2`. The standard alone
+    judges pitting where no `pressure` away from edges is known.
 
     Parameters
     ----------
@@ -143,7 +148,8 @@ def rate(
     request : RatingRequest
         Bodies, duty cycle and required safeties.
     of_loads : LoadStresses or None
-        Stresses of the only flank of the request, if its contact pose differs between loads.
+        Stresses of the only flank of the request, if its contact pose differs between loads; they replace
+        those that `roots` and `pressure` give by torque.
 
     Returns
     -------
@@ -183,7 +189,7 @@ def rate(
 
 
 def _stress_by_load(stress: Stress, duty: FlankDuty) -> Array:
-    """Return the stress (n,), Pa, at every load of the duty cycle."""
+    """Return the stress (n,), Pa, at the torque of each load of the flank."""
     return np.array([stress(torque) for torque in duty.torque])
 
 
@@ -197,7 +203,11 @@ def _rate_failure(
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
 ) -> FailureRating:
-    """Rate one failure by one method: damage, safety and life under the duty cycle."""
+    """Rate one flank against one failure (`bending` or `pitting`) by one method: damage, safety and life.
+
+    `by_load` (n,), Pa, is the stress of each load of `duty`; `allowed_stress`, Pa, that which may be
+    repeated for ever before life factors. Life is the time of the duty cycle over Miner's sum.
+    """
     harm = damage(by_load, duty.cycles, allowed_stress, limits.life)
     total = float(harm.sum())
     loads = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]

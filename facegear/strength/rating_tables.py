@@ -75,7 +75,9 @@ def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) ->
 
 
 def _worst_ways(ways: Sequence[FailureRating]) -> list[FailureRating]:
-    """Return for each kind of failure the rating method with the smallest safety."""
+    """Return for each failure (bending, pitting) the rating of one flank whose method gives the smallest
+    safety.
+    """
     return [
         min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)
         for failure in dict.fromkeys(rating.failure for rating in ways)
@@ -85,7 +87,8 @@ def _worst_ways(ways: Sequence[FailureRating]) -> list[FailureRating]:
 def rating_table(
     ratings: Sequence[FailureRating], pressure: ContactPressure, roots: Mapping[str, RootStress]
 ) -> pd.DataFrame:
-    """Tabulate safety and life by flank, failure and method; stress is that of the hardest load of any cycle.
+    """Tabulate safety and life by flank, failure and method; stress is that of the hardest load of any
+    cycle.
 
     The error is that of the contact analysis' `pressure`, or of the mesh at the largest of `roots`; other
     methods have none.
@@ -95,9 +98,9 @@ def rating_table(
     ratings : Sequence[FailureRating]
         Ratings of all flanks.
     pressure : ContactPressure
-        Pressure on the flanks.
+        Pressure on the flanks; gives its error and the range of solved torques.
     roots : Mapping[str, RootStress]
-        Root stress of both bodies.
+        Root stress of both bodies; gives its error.
 
     Returns
     -------
@@ -127,12 +130,15 @@ def rating_table(
 
 
 def _without_empty_reliability(table: pd.DataFrame, ratings: Sequence[FailureRating]) -> pd.DataFrame:
-    """Remove the reliability where no card has the shape of its distribution of lives."""
+    """Remove the column `reliability` where no rating's material has a Weibull shape."""
     return table if any(rating.has_shape for rating in ratings) else table.drop(columns="reliability")
 
 
 def _error(rating: FailureRating, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
-    """Return the error of the stress, Pa, under the hardest load; nan where it is not known."""
+    """Return the error (Pa) of a rating's stress under its largest load; nan for methods of the standard.
+
+    `pressure` gives it for the contact analysis, `roots` by body for finite elements.
+    """
     if rating.method == "contact analysis":
         return pressure.error_at(rating.duty.largest)
     return (
@@ -143,7 +149,8 @@ def _error(rating: FailureRating, pressure: ContactPressure, roots: Mapping[str,
 
 
 def curve_table(ratings: Sequence[FailureRating]) -> pd.DataFrame:
-    """Tabulate the stress that may be repeated so many times.
+    """Tabulate the allowed stress of each rating over the number of cycles: its limit times the life
+    factor.
 
     Parameters
     ----------
@@ -153,7 +160,8 @@ def curve_table(ratings: Sequence[FailureRating]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns as CURVE_COLUMNS.
+        Columns as CURVE_COLUMNS; POINTS rows a rating, from the first to the last point of the life
+        curve.
     """
     parts = []
     for rating in ratings:
@@ -210,7 +218,7 @@ def _subject(rating: FailureRating) -> tuple[str, ...]:
 
 
 def _within(rating: FailureRating, pressure: ContactPressure) -> np.ndarray:
-    """Return whether each load (n,) lies within the torques of the contact analysis."""
+    """Mark the loads (n,) within the torques of the contact analysis, and those without cycles."""
     return pressure.within(rating.duty.torque) | (rating.duty.cycles == 0.0)
 
 
@@ -221,7 +229,8 @@ RED = "red"
 def with_scuffing(safety: pd.DataFrame, spectrum: pd.DataFrame, losses: pd.DataFrame) -> pd.DataFrame:
     """Add SCUFFED_COLUMNS to the table of safety: the worst of all bins and meshes of each flank.
 
-    A flank is red where its contact is too hot or its film too thin for the oil.
+    A flank turns red, with a reason, where its safety against scuffing or micropitting is below 1.
+    `within_torques_solved` becomes false where a load of `losses` lies outside.
 
     Parameters
     ----------
@@ -230,7 +239,8 @@ def with_scuffing(safety: pd.DataFrame, spectrum: pd.DataFrame, losses: pd.DataF
     spectrum : DataFrame
         Columns as DUTY_SPECTRUM_COLUMNS; it names the meshes of each flank.
     losses : DataFrame
-        A row a bin and loaded flank of stage machine_loss.
+        A row a bin and loaded flank of stage machine_loss: columns bin, mesh, flank, SCUFFED_COLUMNS and
+        within_torques_solved.
 
     Returns
     -------

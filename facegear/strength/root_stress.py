@@ -24,16 +24,18 @@ FINER = 8
 
 @dataclass(frozen=True, eq=False)
 class RootStress:
-    """Stress (Pa) at the gauges of one tooth while it passes through the mesh; t torques.
+    """Stress (Pa, tension positive) at the gauges of one tooth while it passes through the mesh; t
+    torques.
 
     Attributes
     ----------
     torques : (t,)
-        Torques on the pinion, N m.
+        Torques on the pinion, rising, N m.
     passage : (n,)
         Positions in pitches, 0 to 1 while the tooth belongs to pair 0.
     stress : (t, n, 2, a, b)
-        Fillets below the loaded and below the other flank, a gauges down them, b along the face.
+        Normal stress along the fillet, below the loaded flank (index 0) and below the other; a gauges
+        down each fillet, b along the face.
     along : (b,)
         Gear radius, the pinion's distance from the gear's axis, m.
     angle : (2, a, b)
@@ -101,14 +103,16 @@ def root_stress(
 ) -> RootStress:
     """Superpose gauge readings by the loads of t torques at p positions.
 
-    Teeth further apart than d do not affect each other.
+    Teeth further apart than d do not affect each other. The tooth that is read runs through the numbers
+    `teeth`: tooth j at position x is at j + x of its passage.
 
     Parameters
     ----------
     readings : (2 d + 1, g, c) array
-        Stress at g gauges of a tooth by unit forces on c nodes of the teeth up to d away, Pa/N.
+        Stress at g gauges of a tooth by unit forces along the outward normal on c nodes, Pa/N; entry k is
+        for forces on the tooth with a number larger by d - k.
     loads : Mapping[int, csr_matrix]
-        Forces by tooth, (t p, c), N.
+        Forces into the flank by tooth, (t p, c), N, torque by torque and position by position.
     torques : (t,) array
         Torques on the pinion, N m.
     positions : (p,) array
@@ -116,7 +120,7 @@ def root_stress(
     along : (b,) array
         Gear radius of the gauges, m.
     angle : (2, a, b) array
-        Angle between the tangent at the gauges and the tooth's middle line, rad.
+        Angle between the tangent at the gauges and the tooth's middle line, rad; g = 2 a b.
     error : (b,) array or None
         Relative error of the largest stress, None where it is not known.
     teeth : (n,) array of int or None
@@ -125,7 +129,7 @@ def root_stress(
     Returns
     -------
     RootStress
-        Stress over torque and passage.
+        Stress over torque and passage (n p places).
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
@@ -172,7 +176,11 @@ def down_the_fillet(values: Array) -> Array:
 
 @lru_cache(maxsize=8)
 def _finer(rows: int) -> Array:
-    """Splines through unit values at each of `rows` gauges, at FINER times as many points; only read."""
+    """Return the matrix (FINER rows, rows) from values at `rows` gauges to a cubic spline at FINER times
+    as many points.
+
+    The points run evenly from the first to the last gauge. The array is shared; callers only read it.
+    """
     spline = scipy.interpolate.CubicSpline(np.arange(rows), np.eye(rows))
     return np.asarray(spline(np.linspace(0.0, rows - 1.0, FINER * rows)))
 
@@ -204,10 +212,12 @@ def largest_tension(root: RootStress) -> Callable[[float], float]:
 
 
 def _sections_with_the_largest(stress: Array) -> Array:
-    """Sections (t, s, a) across the fillet that may have the largest of the stresses (t, n, 2, a, b).
+    """Return sections (t, s, a) across the fillet that may have the largest of the stresses (t, n, 2, a,
+    b), Pa.
 
-    Between two torques the larger of two places of tension is at least half the blend of their stresses; a
-    section whose spline stays below half the largest stress at every torque solved is never the largest.
+    A section is the a gauges down one fillet at one place of the passage and along the face. Between two
+    torques the larger of two places of tension is at least half the blend of their stresses; a section
+    whose spline stays below half the largest stress at every torque solved is never the largest.
     """
     sections = np.moveaxis(stress, -2, -1).reshape(len(stress), -1, stress.shape[-2])
     values = sections.reshape(len(sections), -1)
@@ -220,9 +230,10 @@ def _sections_with_the_largest(stress: Array) -> Array:
 
 
 def _may_be_largest(low: Array, high: Array) -> Mask:
-    """Mask of the lines from `low` to `high` (n,) that rise anywhere above those that are largest at an end.
+    """Mark the lines from `low` to `high` (n,) that rise anywhere above those that are largest at an end.
 
-    Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.
+    `low` and `high` are the stresses (Pa) of n places at two neighbouring torques. Two lines bound the
+    largest from below by a kinked line, so that it is enough to look at the kink.
     """
     first, last = int(np.argmax(low)), int(np.argmax(high))
     lead, gain = low[first] - low[last], high[last] - high[first]

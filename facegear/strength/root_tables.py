@@ -57,7 +57,10 @@ def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
 
 
 def _peak(root: RootStress, side: int, fine: Array) -> tuple[float, ...]:
-    """Return the columns of the table of root stress from `largest_mpa` on, for one fillet."""
+    """Return the columns of ROOT_STRESS_COLUMNS from `largest_mpa` on, for one fillet at one torque.
+
+    `side` is the fillet's index in FILLETS; `fine` (n, m, b), Pa: its stress at m points down the fillet.
+    """
     when, down, column = np.unravel_index(np.argmax(fine), fine.shape)
     angle = down_the_fillet(root.angle[side])
     return (
@@ -72,7 +75,11 @@ def _peak(root: RootStress, side: int, fine: Array) -> tuple[float, ...]:
 
 
 def _at_angle(fine: Array, angle: Array, section_angle: float) -> float:
-    """Largest of stress (n, m, b) where the angle (m, b) has a value; nan where no gauges enclose it."""
+    """Return the largest stress (Pa) where the fillet's tangent has the angle `section_angle` (rad).
+
+    `fine` (n, m, b): stress, interpolated over `angle` (m, b), rad; nan where no gauges enclose the
+    angle.
+    """
     values = [np.nan]
     for column in range(angle.shape[1]):
         order = np.argsort(angle[:, column])

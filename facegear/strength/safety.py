@@ -63,7 +63,7 @@ class RatingRequest:
     Attributes
     ----------
     bodies
-        Bodies `pinion` and `face_gear`.
+        Limits and roughness by gear, `pinion` and `face_gear`.
     duty
         Loads of the flanks of all gears.
     time
@@ -80,14 +80,14 @@ class RatingRequest:
 
 
 def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> float:
-    """Solve for the factor on all stresses at which Miner's sum over the bins reaches 1.
+    """Solve for the factor on all stresses at which Miner's sum over all loads reaches 1, by bisection.
 
     Parameters
     ----------
     stress : (n,) array
-        Stress, Pa.
+        Stress of each load, Pa.
     cycles : (n,) array
-        Number of cycles.
+        Number of cycles of each load.
     allowed_stress : float
         Stress that may be repeated for ever before life factors, Pa.
     life : Life
@@ -109,9 +109,11 @@ def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> f
 
 
 def reversal(root: RootStress, duty: FlankDuty) -> float:
-    """Return the stress ratio of a turn at the place of the largest stress, in the bin of the largest load.
+    """Return the stress ratio R of a turn at the place of the largest tension, in the bin of the largest
+    load.
 
-    Compression comes from the loads of the other flank; where it has none stress is taken to rise from 0.
+    The place is on the fillet below the rated flank. Compression comes from the loads of the other flank;
+    where it has none stress is taken to rise from 0, and R is 0.
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def reversal(root: RootStress, duty: FlankDuty) -> float:
     Returns
     -------
     float
-        Smallest over largest stress, dimensionless.
+        Smallest over largest stress, dimensionless; negative where stress swings.
     """
     worst = int(np.argmax(np.where(duty.cycles > 0.0, duty.torque, 0.0)))
     opposite_torque = duty.opposite[duty.bins[worst]]
@@ -187,7 +189,7 @@ def permissible_bending(
 def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
     """Return the root section of the pinion for a load at the outer point of single contact.
 
-    The gear is taken as a rack.
+    The gear is taken as a rack: the roll angle there is that of the tip less (contact_ratio - 1) pitches.
 
     Parameters
     ----------
@@ -217,7 +219,10 @@ def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
 
 
 def standard_bending(design: PairDesign, form: RootForm) -> Stress:
-    """Return F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the narrower face.
+    """Return the root stress F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the
+    narrower face b.
+
+    F_t is the torque over the pinion's pitch radius, m the module.
 
     Parameters
     ----------
@@ -229,16 +234,18 @@ def standard_bending(design: PairDesign, form: RootForm) -> Stress:
     Returns
     -------
     Stress
-        Stress (Pa) at a torque (N m) on the pinion.
+        Function from torque (N m) on the pinion to stress (Pa).
     """
     scale = form.form_factor * form.stress_correction / (_width(design) * design.module)
     return lambda torque: torque / design.pinion_pitch_radius * scale
 
 
 def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingRequest) -> dict[str, Stress]:
-    """Return the contact stress of the standard on each body, the gear's flank taken as a rack's.
+    """Return the contact stress of ISO 6336-2 on each body, the gear's flank taken as a rack's.
 
-    The pinion is judged at its inner point of single contact where that is worse than the pitch point.
+    Z_E Z_epsilon sqrt(F / (b R)), F the force along the line of action, b the narrower face and R the
+    pinion's radius of curvature at the pitch point. The pinion is judged at its inner point of single
+    contact where that is worse.
 
     Parameters
     ----------
@@ -252,7 +259,7 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
     Returns
     -------
     dict[str, Stress]
-        Stress (Pa) at a torque (N m) on the pinion, by body.
+        Stress (Pa) at a torque (N m) on the pinion, by body (`pinion`, `face_gear`).
 
     Raises
     ------
@@ -266,6 +273,9 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
     factor = elasticity_factor(first, second) * contact_ratio_factor(contact_ratio)
 
     def at(roll: float) -> Stress:
+        """Return the function from torque (N m) to contact stress (Pa) at a roll angle (rad) of the
+        pinion.
+        """
         return lambda torque: factor * sqrt(torque / (base * _width(design)) / (base * roll))
 
     if inner <= 0.0:

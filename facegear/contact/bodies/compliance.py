@@ -22,25 +22,29 @@ SHARES = (7, 3)
 class FlankCompliance:
     """Normal displacements of the flanks of a gear by unit normal forces on one of them, m/N.
 
+    Forces and displacements are along the outward normal; those of a pressed flank are negative. Lattice
+    node (i, j) has number i nv + j, i across the profile from the tip, j along the face width.
+
     Attributes
     ----------
     loaded_tooth : (n, n) array
-        On the loaded tooth, nodes of the refined lattice `shape`.
+        On the loaded tooth, nodes of the refined lattice `shape`; row: displaced node, column: loaded
+        node.
     neighbour_blocks : (2 d + 1, c, c) array
         On the tooth t - d further along, nodes of the lattice before refinement `coarse_shape` (the field
         of a neighbour is smooth); the middle block repeats the loaded tooth and is not used.
     shape, coarse_shape
-        Of the two lattices.
+        Numbers of nodes (nu, nv) of the refined lattice and of the lattice before refinement.
     refinement
         Relates the two lattices.
     linear
         Whether displacements are linear between nodes, not quadratic over elements.
     readings : (2 d + 1, g, c) array
         Readings of g gauges on the tooth t - d further along by unit normal forces on the nodes of the
-        lattice before refinement; empty without gauges.
+        lattice before refinement, Pa/N; empty without gauges.
     scale
-        Factor of the displacements in `loaded_tooth` and `neighbour_blocks`: another Young's modulus needs
-        no copies of them.
+        Factor of the displacements in `loaded_tooth` and `neighbour_blocks`, not of `readings`: another
+        Young's modulus needs no copies of them.
     """
 
     loaded_tooth: Array
@@ -78,7 +82,7 @@ def flank_compliance(
     element: Element = "hex27",
     gauges: sp.csr_matrix | None = None,
 ) -> FlankCompliance:
-    """Compute the flank compliance of `teeth` copies of a body with cut faces.
+    """Compute the flank compliance of `teeth` copies of a body with cut faces, by static condensation.
 
     All teeth have the same refinement, so that one factorisation serves the loaded tooth and its
     neighbours. A body without cut faces is a gear of its own.
@@ -90,15 +94,16 @@ def flank_compliance(
     refinement : Refinement
         Refinement of the flank layer.
     teeth : int
-        Number of copies.
+        Number of copies; not used for a body without cut faces.
     neighbours : int
         Number of neighbours on each side of the loaded tooth whose compliance is kept.
     ends : Ends
-        Kind of ends of a row of teeth, or ring.
+        `ring` of all teeth, or a row with the loaded tooth in the middle and `free` or `clamped` end
+        faces.
     element : Element
         Other elements than hex27 are linear elements on the same nodes, for comparison.
     gauges : (g, 3 n) sparse matrix, optional
-        Readings by the displacements of the body's n nodes, which must lie on its surface.
+        Readings by the displacements of the body's n nodes, which must lie on its surface, Pa/m.
 
     Returns
     -------
@@ -216,10 +221,13 @@ def coupled_compliance(
 def _among_others(
     tooth: Superelement, coarse: Integers, teeth: int, neighbours: int, ends: Ends
 ) -> tuple[Array, Array, Array]:
-    """Return the arrays of a FlankCompliance, for nodes `coarse` (c,) of the refined lattice.
+    """Return `loaded_tooth`, `neighbour_blocks` and `readings` of a FlankCompliance for a tooth among its
+    copies.
 
-    They are `loaded_tooth`, `neighbour_blocks` and `readings`. In a ring one tooth moves another as it is
-    moved by it, so that one side stands for both.
+    The other `teeth` - 1 copies are attached to the faces of the condensed `tooth` as a stiffness.
+    `coarse` (c,) are the nodes of the refined lattice that exist before refinement, `neighbours` is d. In
+    a ring without gauges only the teeth on the right are computed: blocks on the left are their
+    transposes (Maxwell's theorem).
     """
     rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
     around = cholesky(tooth.faces + rests[0][0], overwrite=True)

@@ -48,11 +48,12 @@ def mesh_of(mesh: MeshHex2, element: Element) -> Mesh:
 
 
 def _from_the_middle(cubes: MeshHex1) -> MeshHex1:
-    """Return the eight cubes of each hexahedron mirrored, so that their tetrahedra meet in its middle.
+    """Return eight 8-node cubes of each hexahedron with their corners renumbered for the split into
+    tetrahedra.
 
-    scikit-fem's tetrahedra stand around the diagonal from corner 3 to corner 4. If it runs from the middle
-    to a corner of the hexahedron, all its faces are divided in the same way and neighbours match, whatever
-    their orientation.
+    scikit-fem's tetrahedra stand around the diagonal from corner 3 to corner 4. If it runs from the
+    middle to a corner of the hexahedron, all its faces are divided in the same way and neighbours match,
+    whatever their orientation.
     """
     bits = ElementHex1.doflocs.astype(np.int64) @ np.array([4, 2, 1])
     corner_order = np.argsort(bits)[bits[:, None] ^ bits[3] ^ bits]
@@ -62,38 +63,40 @@ def _from_the_middle(cubes: MeshHex1) -> MeshHex1:
 
 
 def hex_values(local: Array) -> Array:
-    """Evaluate the triquadratic functions of the unit cube.
+    """Evaluate the 27 triquadratic shape functions of a hexahedron.
 
     Parameters
     ----------
     local : (n, 3) array
-        Positions in the unit cube, dimensionless.
+        Positions in the unit cube, each coordinate 0 to 1, dimensionless.
 
     Returns
     -------
     (n, 27) array
-        Values, dimensionless.
+        Values, dimensionless; columns in the order of `ElementHex2`'s local nodes.
     """
     element = ElementHex2()
     return np.stack([element.lbasis(local.T, i)[0] for i in range(len(element.doflocs))], axis=1)
 
 
 def element_stiffness(basis: Basis, material: Material) -> Array:
-    """Compute the stiffness of a scalar basis' elements, each of their a functions taken for x, y and z.
+    """Compute the stiffness of elements whose d displacement components share one scalar basis of a
+    functions.
 
-    Dof 3 n + i is the displacement of local node n along axis i.
+    Isotropic elasticity, in plane strain for d = 2. Dof d n + i is the displacement of local node n along
+    axis i.
 
     Parameters
     ----------
     basis : Basis
-        Basis of scikit-fem with m elements.
+        Scalar basis of scikit-fem with m elements in d = 2 or 3 dimensions.
     material : Material
         Of the elements.
 
     Returns
     -------
-    (m, 3 a, 3 a) array
-        N/m.
+    (m, d a, d a) array
+        N/m, in two dimensions per metre of width.
 
     Raises
     ------
@@ -111,16 +114,17 @@ def element_stiffness(basis: Basis, material: Material) -> Array:
 
 
 def isoparametric_stiffness(points: Array, element: Element, material: Material) -> Array:
-    """Compute the stiffness of isoparametric elements in space.
+    """Compute the stiffness of isoparametric elements in space, by Gauss quadrature of the degree in
+    KINDS.
 
-    Dof a i + n is the displacement of local node n along axis i.
+    Dof a i + n is the displacement of local node n along axis i (all x first, then all y, then all z).
 
     Parameters
     ----------
     points : (m, a, 3) array
         Positions of the nodes of each element, m.
     element : Kind
-        Kind of element.
+        Kind of element, a key of KINDS.
     material : Material
         Of the elements.
 
@@ -148,8 +152,8 @@ def isoparametric_stiffness(points: Array, element: Element, material: Material)
 
 @cache
 def _at_quadrature(element: Element) -> tuple[Array, Array]:
-    """Return weights (q,) of the element's quadrature and gradients (q, d, a) of its functions at
-    the points.
+    """Return the weights (q,) of the element's quadrature points in its reference cell, and the gradients
+    (q, d, a) of its a shape functions there by local coordinate.
     """
     make, degree = KINDS[element]
     kind = make()
@@ -159,8 +163,11 @@ def _at_quadrature(element: Element) -> tuple[Array, Array]:
 
 
 def _contract_gradients(weighted_gradients: Array, material: Material) -> Array:
-    """Return the stiffness (m, d, a, d, a) from gradients (q, m, d, a) times the root of the volume of each
-    point.
+    """Return isotropic element stiffnesses (m, d, a, d, a), N/m: axis and node of the force, then of the
+    displacement.
+
+    `weighted_gradients` (q, m, d, a): gradients of a shape functions by position at q quadrature points
+    of m elements, 1/m, times the square root of the volume that each point stands for.
     """
     points, elements, axes, nodes = weighted_gradients.shape
     flat = weighted_gradients.reshape(points, elements, axes * nodes).transpose(1, 0, 2)
@@ -177,7 +184,9 @@ def _contract_gradients(weighted_gradients: Array, material: Material) -> Array:
 
 
 def _require_right_side_out(volume: Array) -> None:
-    """Raise ValueError for elements of which the volume (m, q) of a point has another sign than the first."""
+    """Raise ValueError if an element's Jacobian determinants `volume` (m, q) at its q points differ in
+    sign.
+    """
     orientation = np.sign(volume)
     is_inverted = (orientation != orientation[:, :1]).any(axis=1)
     if is_inverted.any():
@@ -221,6 +230,7 @@ def elements_of(
     nodes = finer.dofs.element_dofs[:, elements].T.astype(np.int64)
 
     def matrices(members: Integers) -> Array:
+        """Return the stiffness (k, 3 a, 3 a), N/m, of k of the elements, by their numbers."""
         return isoparametric_stiffness(finer.doflocs.T[nodes[members]], element, material)
 
     rows = (3 * nodes[:, None, :] + np.arange(3)[:, None]).reshape(len(nodes), -1)
@@ -268,6 +278,9 @@ class ElasticBody:
     mirror: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
+        """Raise ValueError if the flank grid is even, the cut faces do not match by `turn`, or the mirror
+        is wrong.
+        """
         if self.flank.shape[0] % 2 == 0 or self.flank.shape[1] % 2 == 0:
             raise ValueError("the flank grid of quadratic elements has an odd number of nodes both ways")
         if self.left.size:
@@ -278,7 +291,9 @@ class ElasticBody:
             raise ValueError("the body is not its own mirror image")
 
     def _is_symmetric(self) -> bool:
-        """Whether nodes, held dof and the flank are the same behind the middle plane as before it."""
+        """Whether positions, held dof, flank nodes and normals equal their images, with y mirrored at the
+        mid-width plane.
+        """
         image = self.points * np.array([1.0, -1.0, 1.0])
         image[:, 1] += self.points[:, 1].min() + self.points[:, 1].max()
         apart = np.abs(self.points[self.mirror] - image).max()

@@ -81,8 +81,9 @@ class TiedSystem:
 class FlankElements:
     """Elements (a, b) under the flank, and where the flank's directions run in their unit cubes.
 
-    A point u along the profile, v along the width and w in depth of an element (0..1 each) is at the local
-    position corner + (u, v, w) @ axes, with `corner` (a, b, 3) and `axes` (a, b, 3, 3).
+    `elements` (a, b) are numbers in the body's mesh: a across the profile, b along the width. A point u
+    along the profile, v along the width and w in depth of an element (0..1 each) is at the local position
+    corner + (u, v, w) @ axes, with `corner` (a, b, 3) and `axes` (a, b, 3, 3).
     """
 
     elements: Integers
@@ -141,6 +142,7 @@ def flank_elements(body: ElasticBody) -> FlankElements:
     elements = body.mesh.f2t[0, facets].astype(np.int64)
 
     def local(nodes: Integers) -> Array:
+        """Return the positions (a, b, 3) of flank nodes (a, b) in the unit cubes of their `elements`."""
         is_same_node = dofs.element_dofs[:, elements] == nodes
         if not is_same_node.any(axis=0).all():
             raise ValueError("a flank facet is not the face of one element")
@@ -153,17 +155,20 @@ def flank_elements(body: ElasticBody) -> FlankElements:
 
 
 def depth_stations(refinement: Refinement) -> Array:
-    """Return the positions of the 2 depth + 1 node planes; elements grow by `grading` away from the surface.
+    """Return the depths of the 2 depth + 1 planes of nodes in the refined layer under the flank.
+
+    Element sizes grow by the factor `grading` from each element to the next away from the surface.
+    Stations are ends and middles of the elements.
 
     Parameters
     ----------
     refinement : Refinement
-        Cuts in depth and their grading.
+        Number of elements in depth and their grading.
 
     Returns
     -------
     (2 depth + 1,) array
-        Depth as a fraction of the layer, 0 at the surface.
+        Depth as a fraction of the layer, 0 at the surface, 1 at its bottom.
     """
     sizes = refinement.grading ** np.arange(refinement.depth)
     ends = np.concatenate([[0.0], np.cumsum(sizes) / sizes.sum()])
@@ -174,7 +179,7 @@ def depth_stations(refinement: Refinement) -> Array:
 
 
 def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinement) -> Layer:
-    """Cut the elements under the flank.
+    """Cut the elements under the flank into smaller ones, with nodes on the same quadratic geometry.
 
     Parameters
     ----------
@@ -183,12 +188,12 @@ def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinemen
     under : FlankElements
         Elements under the flank.
     refinement : Refinement
-        Number of cuts in each direction.
+        Number of smaller elements that replace one, in each direction.
 
     Returns
     -------
     Layer
-        Mesh of the layer.
+        Mesh of the layer alone, and how its nodes lie in the body's elements.
     """
     cuts = np.array([refinement.profile, refinement.width, refinement.depth])
     shape = 2 * cuts * np.array([*under.elements.shape, 1]) + 1
@@ -214,7 +219,10 @@ def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinemen
 
 
 def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "hex27") -> TiedSystem:
-    """Assemble a body whose flank layer is cut.
+    """Assemble a body whose flank layer is cut into smaller elements.
+
+    Nodes of the layer on faces shared with whole elements are no unknowns: they take the displacement
+    that the whole element's functions have there. All other nodes are the masters.
 
     Parameters
     ----------
@@ -290,8 +298,11 @@ def _parts(
     refinement: Refinement,
     element: Element,
 ) -> tuple[Part, Part]:
-    """Return the elements that stay, each a cell, and the elements of the layer, in the cells from which they
-    were cut.
+    """Return the stiffness of the whole elements and of the layer's small elements, each as a Part.
+
+    `stays` are the numbers of the whole elements, each a cell of its own; small elements share the cell
+    of the element they were cut from. `coarse` maps the body's nodes to masters, -1 if refined away;
+    `follow` (layer nodes, masters) holds the weights of masters in each layer node's displacement.
     """
     members = layer.mesh.dofs.element_dofs.T
     cuts = 2 * np.array([refinement.profile, refinement.width])
@@ -310,8 +321,10 @@ def _parts(
 
 
 def _mirror_masters(body: ElasticBody, layer: Layer, coarse: Integers, fine: Integers) -> Integers:
-    """Return the master (n,) behind the middle plane of each master; empty for a body without such
-    a plane.
+    """Return the number (n,) of each master's mirror image at the mid-width plane; empty for an
+    asymmetric body.
+
+    `coarse` and `fine` give the master of each node of the body and of the layer, -1 where it has none.
     """
     if not body.mirror.size:
         return body.mirror
@@ -324,13 +337,16 @@ def _mirror_masters(body: ElasticBody, layer: Layer, coarse: Integers, fine: Int
 
 
 def _centres(body: ElasticBody) -> Array:
-    """Return the centres (m, 3) of the body's elements."""
+    """Return the centre (m, 3), m, of each of the body's elements: the mean position of its 27 nodes."""
     return body.points[body.mesh.dofs.element_dofs].mean(axis=0)
 
 
 def _tied_nodes(layer: Layer, is_used: Mask) -> Mask:
-    """Mark the fine nodes on the boundary of the layer whose coarse parents all belong to elements
-    that stay.
+    """Mark the layer's nodes (n,) that follow whole elements: on its boundary, with all parents still in
+    use.
+
+    Parents are the nodes of the original element with a non-zero weight; `is_used` marks the body's nodes
+    that belong to whole elements.
     """
     at, ends = layer.lattice, np.array(layer.number.shape) - 1
     edge = (at[:, :2] == 0).any(axis=1) | (at == ends).any(axis=1)

@@ -20,6 +20,8 @@ LEFT, RIGHT = 0, 1
 def join_chains(first: Array, second: Array) -> Array:
     """Join two chains in series, right face of the first on the left face of the second.
 
+    The shared face is eliminated: Schur complement onto the two outer faces.
+
     Parameters
     ----------
     first : (2s, 2s) array
@@ -30,7 +32,7 @@ def join_chains(first: Array, second: Array) -> Array:
     Returns
     -------
     (2s, 2s) array
-        Stiffness of the joined chain, N/m.
+        Stiffness of the joined chain, N/m; left face of the first, then right face of the second.
     """
     s = len(first) // 2
     coupling, ends = np.empty((s, 2 * s), order="F"), np.zeros((2 * s, 2 * s), order="F")
@@ -71,7 +73,8 @@ def chain(faces: Array, teeth: int) -> Array:
 
 
 def apart(stiffness: Array) -> bool:
-    """Whether the two ends of a chain are not coupled, as those of a long one.
+    """Whether the coupling block between the two ends of a chain is exactly zero, as `chain` makes it for
+    long ones.
 
     Parameters
     ----------
@@ -88,7 +91,9 @@ def apart(stiffness: Array) -> bool:
 
 
 def _almost_apart(stiffness: Array) -> bool:
-    """Whether the coupling of the two ends of a chain is at most APART of its stiffness."""
+    """Whether the largest coupling of a chain's two ends is at most APART of its largest diagonal
+    stiffness.
+    """
     s = len(stiffness) // 2
     return bool(np.abs(stiffness[:s, s:]).max(initial=0.0) <= APART * np.abs(stiffness.diagonal()).max())
 
@@ -102,10 +107,11 @@ def _ends(stiffness: Array) -> Array:
 
 
 def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
-    """Compute the stiffness that the other teeth give to the faces of 1 + k adjoining teeth, k =
-    0..neighbours.
+    """Compute the stiffness that the other teeth add to the outer faces of a row of adjoining teeth.
 
-    It joins the row's left and right face from outside.
+    The row is the loaded tooth with k further ones on one side, k = 0..neighbours. In a ring the rest is
+    one chain that joins the row's left and right face from outside. In a sector it is a chain at each
+    face, whose far end is free or clamped, and the loaded tooth is in the middle.
 
     Parameters
     ----------
@@ -116,12 +122,13 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     teeth : int
         Number of teeth of the ring or sector.
     ends : Ends
-        Kind of ends.
+        `ring`, or the far ends of a sector: `free` or `clamped`.
 
     Returns
     -------
     list of tuples of (2s, 2s) arrays
-        For k further teeth to the left, and for k to the right, N/m.
+        Entry k: for k further teeth to the left, and for k to the right, N/m. Rows and columns belong to
+        the left face of the row, then to its right face.
 
     Raises
     ------
@@ -156,7 +163,9 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
 
 
 def _from_outside(chain: Array) -> Array:
-    """Return the stiffness of a chain whose right face is another row's left one, and the other way round."""
+    """Swap the two faces of a chain's stiffness (2s, 2s): its right face is the left face of the row it
+    closes.
+    """
     s = len(chain) // 2
     return np.roll(chain, (s, s), axis=(0, 1))
 
@@ -164,7 +173,8 @@ def _from_outside(chain: Array) -> Array:
 def moved_faces(faces: Array, rests: list[tuple[Array, Array]], tooth_faces: Array, side: int) -> list[Array]:
     """Compute the displacements of the cut faces of the teeth on one side of a tooth, from it outwards.
 
-    Only the displacements of the tooth's own faces are prescribed. Nothing else is loaded.
+    Only the displacements of the tooth's own faces are prescribed. Nothing else is loaded. Faces are
+    found one after the other, each with the rest of the gear beyond it as `rests` gives it.
 
     Parameters
     ----------
@@ -173,14 +183,14 @@ def moved_faces(faces: Array, rests: list[tuple[Array, Array]], tooth_faces: Arr
     rests : list of tuples of (2s, 2s) arrays
         Result of `rest_stiffness` for n neighbours on each side, N/m.
     tooth_faces : (2s, m) array
-        Displacements of the tooth's own faces, m.
+        Displacements of the tooth's own faces (left, then right) in m load cases, m.
     side : int
         LEFT or RIGHT.
 
     Returns
     -------
     list of (2s, m) arrays
-        Displacements for each of the n teeth, m.
+        Displacements of both faces (left, then right) for each of the n teeth, nearest first, m.
     """
     s = len(faces) // 2
     halves = slice(0, s), slice(s, None)
@@ -220,7 +230,12 @@ def plane_compliance(faces: Array, teeth: int) -> Array:
 
 
 def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Array:
-    """Return the stiffness (s, s), N/m, of a chain at its near end, with the far end free or clamped."""
+    """Return the stiffness (s, s), N/m, of a chain (2s, 2s) at its near end, with the far end free or
+    clamped.
+
+    `near` and `far` are the dof of the two ends. Free: the far end is condensed away; clamped: it stays
+    at zero.
+    """
     if ends == "clamped":
         return stiffness[near, near]
     follow = solve_factored(cholesky(stiffness[far, far]), stiffness[far, near])

@@ -77,20 +77,23 @@ def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superel
 
 
 def frames_of(normals: Array, is_held: Mask) -> Array:
-    """Return orthonormal frames of flank nodes: the unit normal first, then the held axes of a node that has
-    any.
+    """Return orthonormal frames of flank nodes: unit normal, tangential axis, and the cross product of
+    both.
+
+    The tangential axis is a held coordinate axis, if the node has any, else the coordinate axis that is
+    nearest to the tangent plane, projected on it.
 
     Parameters
     ----------
     normals : (n, 3) array
         Unit normals, dimensionless.
     is_held : (n, 3) array of bool
-        Whether each displacement is kept at zero.
+        Whether each displacement (x, y, z) is kept at zero.
 
     Returns
     -------
     (n, 3, 3) array
-        Rows of each frame, dimensionless.
+        Unit vectors as rows of each frame, dimensionless.
 
     Raises
     ------
@@ -156,7 +159,7 @@ class Half:
 
 
 def halves(system: TiedSystem) -> list[Half]:
-    """Split a system that is its own mirror image into two halves.
+    """Split a system that is its own mirror image at mid-width into an even and an odd half.
 
     Parameters
     ----------
@@ -177,6 +180,8 @@ def halves(system: TiedSystem) -> list[Half]:
 def unfold_matrix(even: Array, odd: Array, shape: tuple[int, int], rows: bool = True) -> Array:
     """Return the matrix of the whole lattice from those of both halves.
 
+    Blocks on one side of the middle plane are (even + odd) / 2, blocks across it (even - odd) / 2.
+
     Parameters
     ----------
     even : (..., nu h, nu h) array
@@ -184,7 +189,7 @@ def unfold_matrix(even: Array, odd: Array, shape: tuple[int, int], rows: bool = 
     odd : (..., nu h, nu h) array
         Matrix of the odd half, same unit.
     shape : tuple[int, int]
-        Lattice (nu, h) of a half.
+        Lattice (nu, h) of a half, the middle column included; the whole has nv = 2 h - 1 columns.
     rows : bool
         Whether rows stand for nodes of the lattice, too; if not, the shapes are (..., g, nu h) and (...,
         g, nu nv).
@@ -211,8 +216,10 @@ def unfold_matrix(even: Array, odd: Array, shape: tuple[int, int], rows: bool = 
 
 
 def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
-    """Return elements before the middle plane, those on it with half weight, and the centres of
+    """Return the parts cut down to elements before the mid-width plane, and the centres (m, 3), m, of
     their cells.
+
+    Elements whose centre lies on the plane stay, with half their stiffness. Cells are numbered anew.
     """
     width = np.ptp(system.points[:, 1])
     plane = system.points[:, 1].min() + 0.5 * width
@@ -233,7 +240,12 @@ def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
 
 
 def _half(system: TiedSystem, sign: float) -> Half:
-    """Build the symmetric (sign 1) or antisymmetric (-1) half of a mirror-symmetric system."""
+    """Build the symmetric (sign 1) or antisymmetric (-1) half of a mirror-symmetric system.
+
+    `system` holds the parts before the plane (`_before_the_plane`). On the plane, y is held for sign 1, x
+    and z for sign -1. Masters behind the plane move as `sign` times the mirror image of the masters
+    before it.
+    """
     behind, count = system.mirror, len(system.points)
     on_plane = behind == np.arange(count)
     before = on_plane | (system.points[:, 1] < system.points[behind, 1])
@@ -274,8 +286,12 @@ def _half(system: TiedSystem, sign: float) -> Half:
 def _loaded_masters(
     system: TiedSystem, moves: Mask, image: Integers, sign: float
 ) -> tuple[Integers, sp.csr_matrix]:
-    """Return the loaded masters that stay in a half, and the normal displacements of all masters by
-    theirs.
+    """Return which loaded masters stay in a half, and the matrix (k, l) from their normal displacements
+    to all k.
+
+    `moves` (n,) marks the masters of the half that can move, `image` (n,) numbers each master's
+    representative in the half. The first result (l,) holds positions in `loaded_nodes`; an image has the
+    factor `sign`.
     """
     stay = np.flatnonzero(moves[system.loaded_nodes])
     column = np.full(image.max() + 1, -1)

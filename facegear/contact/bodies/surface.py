@@ -69,7 +69,10 @@ def face_functions(
 
 
 def _interval_functions(x: Array, linear: bool) -> tuple[Array, Array]:
-    """Return values and slopes (..., a) of the Lagrange polynomials of an interval at x (...) in 0..1."""
+    """Return values and slopes (..., a) of the Lagrange polynomials of an interval at x (...) in 0..1.
+
+    Nodes are 0 and 1 if `linear` (a = 2), else 0, 1/2 and 1 (a = 3). Slopes are derivatives by x.
+    """
     value: tuple[Array, ...] = (1.0 - x, x)
     slope: tuple[Array, ...] = (np.full_like(x, -1.0), np.ones_like(x))
     if not linear:
@@ -153,7 +156,10 @@ def hat_values(basis: Basis) -> sp.csr_matrix:
 
 @lru_cache(maxsize=16)
 def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
-    """Return two Gauss points in each interval between nodes on a line, and the two linear functions there.
+    """Return two Gauss points in each interval between nodes on a line, and the two linear functions
+    there.
+
+    The arrays are shared by all callers.
 
     Parameters
     ----------
@@ -163,8 +169,9 @@ def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
     Returns
     -------
     tuple of arrays
-        Points (q,) in node spacings, nodes of both functions (q, 2), and their values (q, 2);
-        dimensionless.
+        Points (q,), q = 2 (nodes - 1), in node spacings from the first node; nodes of both functions (q,
+        2);
+        and their values (q, 2); dimensionless.
     """
     basis = Basis(MeshLine(np.arange(float(nodes))), ElementLineP1(), intorder=TWO_POINTS)
     return np.asarray(basis.global_coordinates()).ravel(), *_by_point(basis)
@@ -192,8 +199,11 @@ def cell_areas(surface: Array) -> Array:
 
 @lru_cache(maxsize=8)
 def _slopes_at_cell_points(shape: tuple[int, int]) -> tuple[sp.csr_matrix, sp.csr_matrix, Array]:
-    """Return slopes (q, n) across and along a surface by its nodes at a pressure basis' Gauss points, and the
-    points' weights (q,).
+    """Return derivatives at the q Gauss points of the pressure basis, and the points' weights (q,) in
+    lattice units.
+
+    The two matrices (q, nu nv) give the derivatives across and along the lattice, per lattice coordinate,
+    of the biquadratic function with given values at the nodes.
     """
     basis = pressure_basis(shape)
     nodes, _, gradients = face_functions(cell_points(basis), shape)
@@ -202,13 +212,17 @@ def _slopes_at_cell_points(shape: tuple[int, int]) -> tuple[sp.csr_matrix, sp.cs
 
 
 def _by_point(basis: Basis) -> tuple[Integers, Array]:
-    """Return nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
+    """Return nodes (q, a) and values (q, a) of the a functions of a scalar basis that are not zero at
+    each point.
+
+    The q quadrature points come element by element.
+    """
     values = np.stack([np.asarray(function[0]).ravel() for function in basis.basis], axis=1)
     return np.repeat(basis.element_dofs.T, basis.X.shape[1], axis=0).astype(np.int64), values
 
 
 def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
-    """Build a sparse matrix with a row of weights for each point on its element's nodes."""
+    """Build a sparse matrix (q, count) whose row p has `values` (q, a) at the columns `nodes` (q, a)."""
     pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
     return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))
 
@@ -221,9 +235,10 @@ GAUSS = 1.0 / np.sqrt(3.0)
 class Gauges:
     """Gauges (a, b) on a surface: a across it, b along its lines, two a facet both ways.
 
-    `position` and unit vectors `across` the lines and `along` them, (a, b, 3). The stress (Pa) at gauge
-    (i, j), number i b + j, is a row times the displacements (m) of the body's nodes, dof 3 k + i: normal
-    stress `normal` across the lines, `axial` along them, and `shear`, each (a b, 3 n).
+    `position` (m) and unit vectors `across` the lines and `along` them, (a, b, 3). The stress (Pa,
+    tension positive) at gauge (i, j), number i b + j, is a row times the displacements (m) of the body's
+    nodes, dof 3 k + i: normal stress `normal` across the lines, `axial` along them, and `shear`, each (a
+    b, 3 n), Pa/m.
     """
 
     position: Array
@@ -305,7 +320,7 @@ def gauges_on(points: Array, nodes: Integers, material: Material) -> Gauges:
 
 
 def _gauges_rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
-    """Return a matrix (q, 3 count) with values (q, a, 3) at the dof of nodes (q, a)."""
+    """Return a matrix (q, 3 count) with values (q, a, 3) at the dof 3 k + i of nodes k (q, a), axes i."""
     dof = 3 * nodes[:, :, None] + np.arange(3)
     pointer = np.arange(0, values.size + 1, values[0].size)
     return sp.csr_matrix((values.ravel(), dof.ravel(), pointer), shape=(len(nodes), 3 * count))
