@@ -55,7 +55,11 @@ class TurningMass:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A torsional spring between two coordinates of the model: N m/rad, N m s/rad."""
+    """A torsional spring between two coordinates of the model.
+
+    first, second: indices of the coordinates, from the body outwards; stiffness, N m/rad; damping, N m
+    s/rad.
+    """
 
     first: int
     second: int
@@ -65,7 +69,14 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class DriveLine:
-    """Seats by the pinions' numbers in the layout, chains of turning masses by those of the bodies."""
+    """Shafts below pinions and chains of turning masses; called with a linear model it adds their
+    coordinates.
+
+    - seats: shaft of a pinion, by the pinion's number in the layout
+    - masses: turning masses from a body outwards, by the body's number in the layout
+
+    Its coordinates are tilt_x and tilt_y of each tilting pinion, then the rotation of each turning mass.
+    """
 
     layout: Layout
     seats: Mapping[int, Seat]
@@ -157,9 +168,11 @@ class DriveLine:
         return springs
 
     def __call__(self, model: LinearModel) -> LinearModel:
-        """Return the model with these coordinates behind its own.
+        """Return the model with the drive line's coordinates behind its own.
 
-        The lumped damping acts on shafts and their bearings, and on no turning mass.
+        Torques move to the last mass of a chain. The stiffness of its shaft replaces the bearing of a
+        pinion that tilts, or whose bearings couple axial motion with others. The lumped damping acts on
+        shafts and their bearings, and on no turning mass.
         """
         added_count = self.size
         inertias = self._inertias()
@@ -190,7 +203,7 @@ class DriveLine:
         )
 
     def _inertias(self) -> Array:
-        """Return the inertias of tilts and turning masses, kg m^2."""
+        """Return the inertias of the added coordinates (size,): tilts, then turning masses, kg m^2."""
         tilts = [self.seats[i].tilt_inertia for i in self.tilting for _ in range(2)]
         return np.array([*tilts, *(mass.inertia for *_, chain in self.chains() for mass in chain)], float)
 
@@ -201,15 +214,20 @@ class DriveLine:
         return tilts + [f"{names[body]}:{mass.name}" for body, _, chain in self.chains() for mass in chain]
 
     def _lengths(self) -> Array:
-        """Return the radius, m, by which each angle counts as a displacement."""
+        """Return the length of 1 rad of each added coordinate (size,), m: the layout's radius of the
+        body.
+        """
         layout = self.layout
         radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
         tilts = [layout.pinion_radius] * (2 * len(self.tilting))
         return np.array(tilts + [radii[body] for body, _, chain in self.chains() for _ in chain])
 
     def _torsion_matrices(self, model: LinearModel) -> tuple[Array, Array]:
-        """Return the stiffness of the torsional springs, and dampers that take the lumped damping away from
-        them.
+        """Return stiffness and dampers of the torsional springs, (n + size, n + size), N m/rad and N m
+        s/rad.
+
+        The dampers are the springs' own less the lumped damping that the model's factors of M and K would
+        add to springs and turning masses, so that these have their own damping alone.
         """
         whole = model.size + self.size
         stiffness, dampers = np.zeros((2, whole, whole))
@@ -222,12 +240,16 @@ class DriveLine:
         return stiffness, dampers
 
     def _inertia(self, coordinate: int) -> float:
-        """Return the inertia of a coordinate by its number in the whole machine, kg m^2."""
+        """Return the inertia of an added coordinate by its index among all coordinates of the machine, kg
+        m^2.
+        """
         return float(self._inertias()[coordinate - self.layout.dof])
 
     def _spin(self, model: LinearModel) -> Spin | None:
-        """Return the gyroscopic terms. Pinions turn against their z, which points away from the gears'
-        axis.
+        """Return the gyroscopic matrix of the tilting pinions, for 1 rad/s of the pinions; None if none
+        tilts.
+
+        Pinions turn against their z, which points away from the gears' axis.
         """
         if not self.tilting:
             return None

@@ -22,7 +22,7 @@ class ToothErrors:
 
     @property
     def turning(self) -> tuple[bool, bool]:
-        """Whether teeth of the pinions and of the gears differ."""
+        """Whether any tooth errors are not zero: of the pinions, and of the face gears."""
         pinion, gear = (any(curve.any() for curve in curves) for curves in (self.pinion, self.gear))
         return pinion, gear
 
@@ -53,7 +53,9 @@ class ToothErrors:
 
 
 def _at(curve: Array, teeth: int, tooth_positions: Array) -> Array:
-    """Return a curve over the teeth of a gear, m, at positions counted in teeth."""
+    """Return a curve over one turn of a gear (samples,), m, linear between samples, at positions (K,)
+    counted in teeth; the samples lie evenly over `teeth` teeth, periodically.
+    """
     return np.interp(tooth_positions, np.arange(curve.size) * (teeth / curve.size), curve, period=teeth)
 
 

@@ -113,7 +113,9 @@ class LinearModel:
 
     @property
     def damping(self) -> Array:
-        """C without gyroscopic terms, (n, n), N s/m."""
+        """Damping matrix C without gyroscopic terms: mass_damping M + bearing_damping K + dampers, (n,
+        n), N s/m.
+        """
         return self.mass_damping * self.mass + self.bearing_damping * self.stiffness + self.dampers
 
     @cached_property
@@ -169,12 +171,12 @@ class LinearModel:
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
 
     def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
-        """Return `slopes` with columns of more coordinates.
+        """Return `slopes` with columns for k more coordinates behind the n present ones.
 
         Parameters
         ----------
         meshes : (meshes,) array of bool
-            The meshes that these coordinates move.
+            The meshes below which these coordinates move the rim; the others get zeros.
         added_slopes : (2, meshes of a gear, k) array
             Slopes by k more coordinates below these meshes, 1/m and m/m.
 
@@ -268,10 +270,11 @@ def bearing_matrix(layout: Layout) -> Array:
 
 
 def flank_jacobian(layout: Layout) -> Array:
-    """Return the derivative of the flanks' deflections by the DOF.
+    """Return the derivative of the flanks' deflections by the degrees of freedom, of the layout's
+    kinematics.
 
-    The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
-    tangential to the face gear and its y is along the face gear's axis.
+    The deflection of a flank is its row times q, minus its error; positive closes the flank. A pinion's x
+    is tangential to the face gear and its y is along the face gear's axis.
 
     Parameters
     ----------
@@ -334,7 +337,7 @@ def lumped_model(
 
 @lru_cache(maxsize=16)
 def _alone(layout: Layout) -> LinearModel:
-    """Return the model without loads, damping and clearance, which all machines of a layout share."""
+    """Return the model of a layout without loads, damping and clearance; equal layouts share it."""
     zeros = np.zeros(layout.dof)
     return LinearModel(
         labels=layout.dof_names,
@@ -353,13 +356,17 @@ def _alone(layout: Layout) -> LinearModel:
 
 
 def _rings(layout: Layout, clearance: Array) -> Rings:
-    """Return the bearings with clearance: body, radial stiffness, N/m, and clearance, m."""
+    """Return the bearings of pinions whose clearance (pinions,), m, is positive, with the stiffness along
+    x.
+    """
     body = np.flatnonzero(clearance > 0.0)
     return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
 
 
 def _lengths(layout: Layout) -> Array:
-    """Return the length of a unit of each coordinate: turns count at the mesh, tilts at the mesh radius."""
+    """Return the length of a unit of each degree of freedom (dof,), m: 1 for displacements, the layout's
+    radius of the body for rotations, the mesh radius for tilts.
+    """
     lengths = np.ones(layout.dof)
     radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
     lengths[layout.spins] = radii

@@ -71,7 +71,10 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
 
 
 def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMachine:
-    """Compute loaded_modes() together with the contacts.
+    """Compute loaded_modes() together with the contacts and which frequencies are certain.
+
+    If contacts are undecided, modes are computed a second time with these closed; a frequency is certain
+    if it is the same to FREQUENCY_TOLERANCE.
 
     Parameters
     ----------
@@ -83,7 +86,7 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
     Returns
     -------
     VibratingMachine
-        Frequencies in Hz, forces in N.
+        Frequencies in Hz, forces in N; `modes` are those with undecided contacts open.
 
     Raises
     ------
@@ -144,7 +147,9 @@ def _attached(bodies: ElasticGears, meshes: tuple[int, ...]) -> ElasticGears:
 
 
 def _wedged_meshes(machine: Machine) -> list[int]:
-    """Return the numbers of wedged meshes whose flanks are coupled by what the modes leave out."""
+    """Return the numbers of the meshes whose two flanks press under the mean torques and are coupled by
+    `Machine.softening`.
+    """
     if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
@@ -155,13 +160,18 @@ def _wedged_meshes(machine: Machine) -> list[int]:
 def _modes(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...], speed: float
 ) -> Modes:
-    """Return the modes with the contacts closed whose state is among `closed_states`."""
+    """Return the modes at a pinion speed (rad/s) with those contacts closed whose state is among
+    `closed_states`.
+    """
     linear, springs = _springs_in_states(machine, contacts, closed_states)
     return modes_of(linear, linear.rows.T @ springs @ linear.rows, speed)
 
 
 def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
-    """Return the linear model with its bearings under load, and the stiffness of the flanks.
+    """Return the linear model with its bearings linearised under load, and the stiffness of the pressed
+    flanks.
+
+    Undecided contacts count as open.
 
     Parameters
     ----------
@@ -171,7 +181,8 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
     Returns
     -------
     tuple of LinearModel and (2 meshes, 2 meshes) array
-        The stiffness in N/m is that of `flank_springs`: zero for flanks that carry no load.
+        The model holds no flanks: add rows^T stiffness rows. The stiffness in N/m is that of
+        `flank_springs`: zero for flanks that carry no load.
 
     Raises
     ------
@@ -184,7 +195,9 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
 def _springs_in_states(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> tuple[LinearModel, Array]:
-    """Return linear model and flank stiffness with the flanks closed that are in the given states."""
+    """Return the linear model with linearised bearings and the flank stiffness (2 meshes, 2 meshes), N/m,
+    with those contacts closed whose state is among `closed_states`.
+    """
     contact_mask = np.array([state in closed_states for state in contacts.flank_states()])
     return _pressed_bearings(machine, contacts, closed_states), flank_springs(machine, contacts, contact_mask)
 
@@ -192,10 +205,11 @@ def _springs_in_states(
 def _pressed_bearings(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> LinearModel:
-    """Return the linear model with every bearing that has clearance replaced by its tangent.
+    """Return the linear model with every bearing that has clearance replaced by its tangent stiffness.
 
-    A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - clearance /
-    distance). A bearing that floats inside its ring carries nothing.
+    A bearing pressed against its ring has stiffness k along its load, and k (1 - clearance / distance)
+    across it. A bearing whose state is not among `closed_states` floats inside its ring and carries
+    nothing.
     """
     linear, states = machine.linear, contacts.ring_states()
     if not linear.rings.body.size:

@@ -189,6 +189,8 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
 
 
 def _body_speeds(layout: Layout, speed_rpm: float) -> Array:
-    """Return the speed of each body, rpm, from the speed of the pinions."""
+    """Return the speed of each body (bodies,), rpm, all positive: pinions, then gears slower by the tooth
+    numbers.
+    """
     gear = speed_rpm * layout.pinion_teeth / layout.gear_teeth
     return np.concatenate([np.full(len(layout.pinions), speed_rpm), np.full(len(layout.gears), gear)])

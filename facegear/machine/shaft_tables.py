@@ -35,16 +35,17 @@ def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
 
 
 def shaft_bearing_loads(line: DriveLine, forces: Array, moments: Mapping[int, Array] | None = None) -> Array:
-    """Return the loads of the shafts on their bearings.
+    """Return the loads of the shafts on their bearings, from the balance of each elastic shaft.
 
     Parameters
     ----------
     line : DriveLine
         The drive line.
     forces : (K, bodies, 3) array
-        Forces of the bodies on what they sit on, N.
+        Forces of the bodies on what they sit on, along x, y, z, N.
     moments : mapping of int to (K, 2) array, or None
-        Moments about x and y by the numbers of pinions, N m.
+        Moments of pinions on their shafts about x and y by the numbers of pinions, N m; 0 for those left
+        out.
 
     Returns
     -------
@@ -147,7 +148,9 @@ def deflection_table(
 
 
 def _stations(shaft: Shaft) -> Array:
-    """Return the positions along a shaft, m, at which its deflection is listed."""
+    """Return rising positions along a shaft, m from its beginning, at which its deflection is listed:
+    STATIONS even ones, ends of segments, bearings and the pinion's middle, each once.
+    """
     ends = np.cumsum([segment.length for segment in shaft.segments])
     bearing_positions = [bearing.position for bearing in shaft.bearings]
     return np.unique(
