@@ -47,12 +47,16 @@ class ForceTable:
 
     @cached_property
     def bounds(self) -> Array:
-        """Series (2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m."""
+        """Series (2 L - 1, 2, harmonics + 1), N/m, between whose extremes all slopes lie; see
+        `slope_bounds`.
+        """
         return slope_bounds(self.levels, self.coefficients)
 
     @cached_property
     def steepest(self) -> float:
-        """Bound of the slope over phase and amount, N/m."""
+        """Upper bound of the slope over phase and compression, N/m: the largest sum of amplitudes among
+        `bounds`.
+        """
         return float(amplitudes(self.bounds).sum(axis=-1).max())
 
     @cached_property
@@ -92,12 +96,12 @@ class ForceTable:
 
 
 def shift_tables(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
-    """Return the tables of contacts that come later by some mesh periods each.
+    """Return the tables of contacts whose force comes later by some mesh periods each: f(phase - lag).
 
     Parameters
     ----------
     tables : Sequence of ForceTable
-        Tables with as many levels and harmonics.
+        One table for each contact, all with as many levels and harmonics.
     cycles : Sequence of float
         Lag of each contact, mesh periods.
 

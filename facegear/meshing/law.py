@@ -12,7 +12,9 @@ from facegear.arrays import Array, Integers
 
 
 class LawAtPhases(Protocol):
-    """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
+    """Law of M contacts at K phases as the compiled statics takes it; classes other than `LinearHeld` and
+    `LoadDependentHeld` only bound the slopes by `stiffness`, (K, M), N/m.
+    """
 
     @property
     def stiffness(self) -> Array:
@@ -55,7 +57,9 @@ class MeshLaw(Protocol):
 
     @property
     def harmonic_fractions(self) -> Array:
-        """Largest fraction (H + 1,) of the slope's bound that each harmonic of the phase makes up."""
+        """Fractions (H + 1,) of the slope's bound by the order of the phase, from the mean on: each is
+        the order's amplitude over `steepest`, the largest of all contacts. A time step is chosen by them.
+        """
 
     def force(self, cycles: Array, beyond: Array) -> Array:
         """Return the forces of the contacts.
@@ -115,8 +119,8 @@ class MeshLaw(Protocol):
     def statics_law(self, cycles: Array) -> LawAtPhases:
         """Evaluate the law at some phases for statics.
 
-        Laws of `facegear.meshing.law` have a kernel. With any other, statics evaluates the forces
-        of the law itself, position by position.
+        `LinearHeld` and `LoadDependentHeld` have a kernel. With any other result, statics evaluates the
+        forces of the law itself, position by position.
 
         Parameters
         ----------
@@ -125,13 +129,15 @@ class MeshLaw(Protocol):
 
         Returns
         -------
-        Held
+        LawAtPhases
             The law at these phases.
         """
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its arrays and numbers by the names that the integrator's function for this law takes."""
+        """Arrays and numbers of the law, by the argument names of its function in
+        `facegear._kernels.motion` (`linear_law`, `load_dependent_law`, `power_law`).
+        """
 
     @property
     def kernel_law(self) -> Any:
@@ -184,7 +190,7 @@ def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
 
 
 class LinearHeld(NamedTuple):
-    """Stiffness (K, M) in N/m of M contacts at K phases."""
+    """Linear law of M contacts at K phases: stiffness (K, M), N/m."""
 
     stiffness: Array
 

@@ -259,7 +259,9 @@ def pose_at(
 
 
 def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
-    """Return the model at rest with the shafts of its pinions, and its displacements (n,)."""
+    """Return the linear model at rest with the shafts of its pinions, and its displacements (n,), m and
+    rad.
+    """
     static_machine, line = static(machine), machine.drive_line
     if line is None or static_machine.drive_line is not None:
         return static_machine.linear, at_rest.displacements[0]
@@ -268,8 +270,10 @@ def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
 
 
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
-    """Return the poses at the displacements, of pinions that stand where their bearings are, in the pair's
-    assembly.
+    """Return the poses of all meshes at displacements (n,), m and rad, of the coordinates of `linear`.
+
+    The shift of the pinions' bearings (`imperfections.position`) and the assembly errors of the surface's
+    pair are added.
     """
     nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
@@ -292,12 +296,13 @@ def _factor(
     back: bool,
     load: float | None,
 ) -> float:
-    """Return the factor on the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the
-    shaft angle (rad).
+    """Return the factor of the pose on the stiffness of a mesh, dimensionless.
 
-    load: torque (N m) at which the stiffnesses are taken, None for its own. Forces that follow the load are
-    all multiplied by the factor, and then lie at another level of their law: it is the factor with which the
-    mesh is pressed in at its load as the surface says.
+    at: torque of the mesh on its pinion (N m), unloaded path (m) and error of the shaft angle (rad);
+    back: whether the back flank carries; load: torque (N m) at which stiffnesses are taken, None for that
+    of the mesh. Forces that follow the load are all multiplied by the factor, and then lie at another
+    level of their law: it is found by iteration as the factor with which the mesh is compressed at its
+    load as the surface says.
     """
     torque = at[0] if load is None else load
     stiffness = surface.at(STIFFNESS, torque, *at[1:])
@@ -315,7 +320,11 @@ def _factor(
 
 
 def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
-    """Return the stiffness of the machine's teeth over that of the surface."""
+    """Return the stiffness of the machine's teeth in a mesh, without pose, over that of the surface.
+
+    It is the mesh's stiffness factor, times mean stiffness over the surface's reference where there are
+    no force tables.
+    """
     mesh_factor = float(machine.imperfections.stiffness[mesh])
     return (
         mesh_factor
@@ -325,8 +334,11 @@ def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
 
 
 def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
-    """Return the machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2
-    meshes,).
+    """Return the machine with a factor (meshes,) on the stiffness of each mesh, and flanks closed by
+    `closure` (2 meshes,), m, drive flanks first.
+
+    What closes both flanks alike is taken off the half backlash, half the difference off the mesh's
+    error.
     """
     flaws = machine.imperfections
     drive, back = np.split(closure, 2)
@@ -363,7 +375,10 @@ class CarryingPairs:
 
 
 def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
-    """Return the different pairs of a machine at a converged pose.
+    """Return the different tooth pairs of a machine at a converged pose, so that each is analysed once.
+
+    Meshes share a pair if flank, assembly errors (to ERROR_TOLERANCE) and torque (to nine digits) are
+    equal.
 
     Parameters
     ----------
