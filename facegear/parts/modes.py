@@ -69,7 +69,9 @@ class OrderModes:
 
 
 def held_solver(body: BodyMatrices, order: int) -> Solve:
-    """Return a function that solves for the displacements of the held body in an order.
+    """Return a function that solves K u = f in an order with the section's held edges fixed.
+
+    K is factorised once.
 
     Parameters
     ----------
@@ -81,7 +83,8 @@ def held_solver(body: BodyMatrices, order: int) -> Solve:
     Returns
     -------
     Solve
-        Function from loads (dofs, ...) to displacements (dofs, ...), SI units.
+        Function from loads (dofs, ...) to displacements (dofs, ...), SI units; displacements of held
+        degrees of freedom are 0.
     """
     free = body.free
     solve = solver(body.stiffness.at(order)[free][:, free])
@@ -101,8 +104,11 @@ def order_modes(
     solve: Solve | None = None,
     expected_count: int = FIRST_TRY,
 ) -> OrderModes:
-    """Compute all modes of an order up to a frequency, or where it is infinite the first `expected_count` +
+    """Compute all modes of an order up to a frequency; where it is infinite, the first `expected_count` +
     1.
+
+    Eigenvalues of K - w^2 M by shift and invert at 0. More modes are computed until one lies beyond the
+    frequency.
 
     Parameters
     ----------
@@ -113,9 +119,9 @@ def order_modes(
     max_frequency : float
         Highest frequency, Hz.
     solve : Solve or None
-        Function of `held_solver`, where it was made already.
+        Function of `held_solver` for this order, where it was made already.
     expected_count : int
-        Approximate number of modes.
+        Number of modes expected; the first attempt computes one more.
 
     Returns
     -------
@@ -156,7 +162,12 @@ def order_modes(
 def _smallest(
     stiffness: sp.csr_matrix, mass: sp.csr_matrix, inverse: Solve, count: int, order: int
 ) -> tuple[Array, Array]:
-    """Return the squares of the smallest angular frequencies and their shapes."""
+    """Return the `count` smallest squared angular frequencies, ascending, (count,), 1/s2, and shapes (f,
+    count) of unit modal mass.
+
+    stiffness, mass (f, f): over the free degrees of freedom; inverse: function that solves the stiffness;
+    order: for the message of NotConverged.
+    """
     operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
     start = np.ones(stiffness.shape[0])
     try:
@@ -170,7 +181,9 @@ def _smallest(
 
 
 def _fix_signs(shapes: Array) -> Array:
-    """Return the shapes with signs such that their largest entry is positive."""
+    """Return the shapes (dofs, m) with signs such that the largest entry by magnitude of each is
+    positive.
+    """
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
@@ -178,7 +191,10 @@ def _fix_signs(shapes: Array) -> Array:
 
 
 def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
-    """Project the body's matrices on the modes of one circumferential order."""
+    """Return the modes of one order with the body's matrices and means projected on them.
+
+    frequencies (m,), Hz; shapes (dofs, m) of unit modal mass.
+    """
     factor = around(order)
     rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
     return OrderModes(

@@ -69,21 +69,24 @@ class ReducedBody:
 
     @property
     def slopes(self) -> Array:
-        """`slope` of every mode, (m,), 1/m."""
+        """Slope dW/dr of every mode, (m,), 1/m: `slope`, or zeros of that shape for a body without
+        slopes.
+        """
         return np.broadcast_to(self.slope, self.order.shape)
 
     def compliance_with_slope(self, length: float) -> Array:
-        """Return the static compliance of W_p, V_p and `length` times the slope.
+        """Return the static compliance of W_p, V_p and `length` times the slope, by unit loads on these
+        three.
 
         Parameters
         ----------
         length : float
-            Factor on the slope, m.
+            Factor on the slope, m, so that all entries have one unit.
 
         Returns
         -------
         (orders, 3, 3) array
-            m/N.
+            m/N, symmetric.
         """
         whole = np.zeros((len(self.static), 3, 3))
         whole[:, :2, :2] = self.static
@@ -93,7 +96,9 @@ class ReducedBody:
 
     @property
     def modal(self) -> Array:
-        """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
+        """The part of `static` that the modes hold, (orders, 2, 2), m/N: sum over the modes of mesh
+        mesh^T / w^2.
+        """
         compliances = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
         scaled_motions = self.mesh / (2.0 * np.pi * self.frequency)
         np.add.at(compliances, self.order, np.einsum("im,jm->mij", scaled_motions, scaled_motions))
@@ -138,7 +143,8 @@ class ReducedBody:
         return {f"{gear}_{entry.name}": getattr(self, entry.name) for entry in fields(self)}
 
     def residual_of_flanks(self, directions: Array) -> Array:
-        """Return the compliance between flanks of one mesh that the modes leave out.
+        """Return the compliance between flanks of one mesh that the modes leave out, summed over all
+        orders.
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
 
@@ -150,6 +156,6 @@ class ReducedBody:
         Returns
         -------
         (f, f) array
-            m/N.
+            Motion of the first flank along its own direction by a unit force on the second, m/N.
         """
         return np.asarray((directions * np.diagonal(self.residual.sum(axis=0))) @ directions.T)

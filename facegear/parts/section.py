@@ -154,7 +154,7 @@ def anticlockwise(corners: Array) -> Array:
 
 
 def _area(corners: Array) -> float:
-    """Return the signed area of a polygon, positive if its corners run counterclockwise."""
+    """Return the signed area (m2) of a polygon of corners (n, 2), m, positive if they run anticlockwise."""
     next_corners = np.roll(corners, -1, axis=0)
     return float(0.5 * np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0]))
 
@@ -183,7 +183,9 @@ def require_simple(corners: Array) -> None:
 
 
 def _folds(ends: Array) -> bool:
-    """Whether two edges after one another lie on one another."""
+    """Whether any edge lies on the edge before it, turned back; ends (n, 2, 2): first and last point of
+    each edge, m.
+    """
     ways = ends[:, 1] - ends[:, 0]
     next_edges = np.roll(ways, -1, axis=0)
     cross = ways[:, 0] * next_edges[:, 1] - ways[:, 1] * next_edges[:, 0]
@@ -218,7 +220,7 @@ def distance_between(first: Array, second: Array) -> float:
 
 
 def _from_edge(point: Array, edge: Array) -> float:
-    """Return the distance of a point from an edge."""
+    """Return the distance (m) of a point (2,) from a straight edge (2, 2) between its ends."""
     way = edge[1] - edge[0]
     fraction = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
     return float(np.linalg.norm(point - edge[0] - fraction * way))
@@ -287,6 +289,8 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
 def section_properties(section: Section) -> tuple[float, float, float, float]:
     """Return mass, moments of inertia and static moment as `mass_properties`, teeth included.
 
+    The layer of teeth counts with its density, which falls linearly from roots to tips by its taper.
+
     Parameters
     ----------
     section : Section
@@ -295,7 +299,8 @@ def section_properties(section: Section) -> tuple[float, float, float, float]:
     Returns
     -------
     tuple of four floats
-        kg, kg m2, kg m2 and kg m.
+        Mass (kg), moments of inertia about the axis and about a diameter at height 0 (kg m2), and mass
+        times the height of its centre (kg m).
     """
     properties = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
@@ -309,7 +314,7 @@ def section_properties(section: Section) -> tuple[float, float, float, float]:
 
 
 def inertia_about(section: Section, height: float) -> float:
-    """Return the moment of inertia about a diameter at a height.
+    """Return the moment of inertia of a section's body about a diameter at a height, teeth included.
 
     Parameters
     ----------
