@@ -44,32 +44,33 @@ class Contacts:
     upper: Array
 
     def beyond(self, deflections: Array) -> Array:
-        """Return how far deflections of contacts lie beyond the backlash edges, 0 between the edges.
+        """Return the compression of contacts by deflections: above the upper edge, or negative below the
+        lower one.
 
         Parameters
         ----------
         deflections : (..., contacts) array
-            m.
+            m, with the error taken off.
 
         Returns
         -------
         (..., contacts) array
-            m.
+            m; 0 between the edges.
         """
         return beyond_edges(deflections, self.lower, self.upper)
 
     def forces(self, beyond: Array) -> Array:
-        """Return the forces of contacts.
+        """Return the forces of contacts by the law.
 
         Parameters
         ----------
         beyond : (..., contacts) array
-            Compression, m.
+            Compression as `beyond` returns it, m.
 
         Returns
         -------
         (..., contacts) array
-            N.
+            N, with the sign of the compression.
         """
         return self.law.force(NO_PHASE, beyond[..., None, :])[..., 0, :]
 
@@ -177,7 +178,9 @@ class _Springs:
         return self.jacobian @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
-        """Return the force of every contact, N, at displacements `q`."""
+        """Return the force (contacts,) of every contact, N, positive above its upper edge, at
+        displacements `q` (n,).
+        """
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
@@ -205,6 +208,9 @@ class _Springs:
         at_start = self.bearing @ q + tie * (q - anchor) - self.loads
 
         def bearings(s: Array) -> Array:
+            """Return the slope (K,), J, of the energy in the bearings with clearance at points s (K,) of
+            the line.
+            """
             return np.asarray(self.rings.push(q + s[:, None] * step) @ step)
 
         return Line(
@@ -233,7 +239,9 @@ class Line:
     bearings: Callable[[Array], Array] | None = None
 
     def _forces(self, s: Array | float) -> Array:
-        """Return the forces, N, of the contacts at a step `s` along the line."""
+        """Return the contact forces (..., contacts), N, at points s of the line, a number or (K, 1), in
+        steps.
+        """
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:

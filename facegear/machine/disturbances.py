@@ -50,12 +50,16 @@ class Excitation:
 
     @property
     def of_mesh(self) -> float:
-        """Frequency over that of the mesh, dimensionless."""
+        """Frequency over that of the mesh: order / teeth, dimensionless."""
         return self.order / self.teeth
 
     @property
     def mesh_harmonic(self) -> int:
-        """Number of the mesh harmonic with this frequency. Raises InvalidInput where there is none."""
+        """Number k >= 1 of the mesh harmonic with this frequency.
+
+        Raises InvalidInput where `of_mesh` is no whole number, as motion in time repeats with the mesh
+        period.
+        """
         nearest = round(self.of_mesh)
         if nearest < 1 or abs(self.of_mesh - nearest) > WHOLE * nearest:
             multiples = (

@@ -27,6 +27,8 @@ class Seat:
 
     Attributes
     ----------
+    shaft : CondensedShaft
+        Compliance of the shaft on its bearings, condensed to the pinion's middle.
     tilt_inertia : float or None
         Moment of inertia about a diameter, kg m2; None for a pinion that does not tilt.
     """
@@ -36,15 +38,19 @@ class Seat:
 
     @property
     def couples_axially(self) -> bool:
-        """Whether the bearings move a pinion along its axis where it is loaded across."""
+        """Whether the bearings couple z with x, y or tilts: a load across the axis moves the pinion along
+        it.
+        """
         axial_row = np.delete(self.shaft.compliance[2], 2)
         return bool((axial_row != 0.0).any())
 
 
 @dataclass(frozen=True)
 class TurningMass:
-    """A turning mass behind a torsional spring: N m/rad, kg m2, and the damping ratio of the two masses that
-    the spring joins, by themselves.
+    """A turning mass behind a torsional spring, towards the body or the mass before it.
+
+    stiffness of the spring, N m/rad; inertia, kg m2; damping_ratio of the two masses that the spring
+    joins, free of all others.
     """
 
     name: str
@@ -84,12 +90,14 @@ class DriveLine:
 
     @property
     def tilting(self) -> tuple[int, ...]:
-        """Indices of the pinions that tilt."""
+        """Numbers in the layout, rising, of the pinions that tilt: those whose seat has a tilt inertia."""
         return tuple(i for i, seat in sorted(self.seats.items()) if seat.tilt_inertia is not None)
 
     @property
     def size(self) -> int:
-        """Number of coordinates that the drive line adds."""
+        """Number of coordinates that the drive line adds: two for each tilting pinion, one for each
+        turning mass.
+        """
         return 2 * len(self.tilting) + sum(len(chain) for chain in self.masses.values())
 
     def tilts(self, pinion: int) -> Integers:
@@ -124,12 +132,13 @@ class DriveLine:
         return np.append(straight, self.tilts(pinion)) if pinion in self.tilting else straight
 
     def chains(self) -> Iterator[tuple[int, int, tuple[TurningMass, ...]]]:
-        """Yield every chain of turning masses.
+        """Yield every chain of turning masses, by rising number of its body.
 
         Yields
         ------
         tuple of int, int and tuple of TurningMass
-            Number of the body, first coordinate and masses.
+            Number of the body in the layout, index of the first mass's coordinate in the model, and the
+            masses from the body outwards.
         """
         first = self.layout.dof + 2 * len(self.tilting)
         for body, chain in sorted(self.masses.items()):
@@ -150,7 +159,10 @@ class DriveLine:
         return at
 
     def springs(self) -> list[Spring]:
-        """Return all torsional springs, from each body outwards.
+        """Return all torsional springs, chain by chain, from each body outwards.
+
+        The damping is 2 zeta sqrt(k J), with J = J1 J2 / (J1 + J2) of the two inertias that the spring
+        joins.
 
         Returns
         -------
@@ -208,7 +220,9 @@ class DriveLine:
         return np.array([*tilts, *(mass.inertia for *_, chain in self.chains() for mass in chain)], float)
 
     def _labels(self) -> list[str]:
-        """Return the names of the coordinates of tilts and turning masses."""
+        """Return the labels `body:letter` of the added coordinates: tilts, then turning masses by their
+        names.
+        """
         names = self.layout.body_names
         tilts = [f"{names[i]}:{letter}" for i in self.tilting for letter in TILT_LETTERS]
         return tilts + [f"{names[body]}:{mass.name}" for body, _, chain in self.chains() for mass in chain]

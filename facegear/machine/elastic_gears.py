@@ -95,9 +95,11 @@ class ElasticGears:
         return model
 
     def _with_attached(self, model: LinearModel, mesh: int, between: float) -> LinearModel:
-        """Return the model with a coordinate of unit mass that couples the two flanks of a mesh.
+        """Return the model with a coordinate that couples the two flanks of a mesh.
 
-        `between` is the motion of either flank by a unit force on the other, m/N.
+        between: motion of either flank by a unit force on the other that the modes leave out, m/N. The
+        coordinate has unit mass and ATTACHED_FREQUENCY times the frequency of the gear's fastest mode;
+        its flank rows are scaled such that its compliance between the flanks is `between`.
         """
         layout, gear = self.layout, self.layout.meshes[mesh][1]
         modes = coordinates(self.bodies[gear], layout.gears[gear].sign, layout.angles, layout.pressure_angle)

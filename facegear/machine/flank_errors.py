@@ -130,7 +130,7 @@ def _early_teeth(machine: Machine, cycles: Array) -> Array:
 
 
 def _beside(values: Array) -> Array:
-    """Concatenate the values of drive and back flanks (2, K, meshes) to (K, 2 meshes)."""
+    """Return values (2, K, meshes) of drive and back flanks as (K, 2 meshes), drive flanks first."""
     return np.concatenate([values[0], values[1]], axis=-1)
 
 

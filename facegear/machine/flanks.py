@@ -96,7 +96,11 @@ def mesh_contacts(machine: Machine) -> MeshContacts:
 
 
 def _flank_contacts(machine: Machine) -> MeshContacts:
-    """Return the contacts of all flanks; errors that never change stand in their edges."""
+    """Return one contact for each flank, drive flanks first.
+
+    Constant errors are part of its upper edge; its error is e(t) alone; the damping is that of closed
+    flanks.
+    """
     upper = flank_edges(machine)
     damping = flank_dampers(machine.damping, np.ones(upper.size, dtype=bool))
     never = np.full(upper.size, -np.inf)

@@ -65,7 +65,8 @@ def from_arrays(arrays: Arrays) -> ToothErrors:
     Parameters
     ----------
     arrays : Arrays
-        Arrays `curves` of that stage, by name.
+        Curves over one turn, (teeth times positions,) in m, named pinion_drive_m, pinion_back_m,
+        face_gear_drive_m and face_gear_back_m.
 
     Returns
     -------
@@ -129,7 +130,9 @@ class Imperfections:
 
     @property
     def any_slow(self) -> bool:
-        """Whether an error changes from one mesh cycle to the next."""
+        """Whether an error changes from one mesh cycle to the next: runout, pitch deviations or errors of
+        single teeth.
+        """
         turning = (*self.pinion_runout, *self.gear_runout)
         teeth = self.teeth is not None and any(self.teeth.turning)
         pitch = bool(self.pinion_pitch or self.gear_pitch)
@@ -137,7 +140,9 @@ class Imperfections:
 
     @property
     def without_slow_errors(self) -> "Imperfections":
-        """Imperfections without what changes from one mesh cycle to the next, as steady motions see them."""
+        """Imperfections without runouts, pitch deviations and errors of single teeth, as periodic motions
+        need them.
+        """
         pinions, gears = len(self.pinion_runout), len(self.gear_runout)
         return replace(
             self,

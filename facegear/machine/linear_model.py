@@ -108,7 +108,9 @@ class LinearModel:
 
     @property
     def loads(self) -> Array:
-        """Constant generalised loads (n,): torques, N m, and forces, N."""
+        """Constant generalised loads (n,): `torques` plus `forces`, N m for rotations and N for
+        displacements.
+        """
         return self.torques + self.forces
 
     @property
@@ -155,7 +157,8 @@ class LinearModel:
         return self.masses.reshape(-1, *(1,) * (velocities.ndim - 1)) * velocities
 
     def over_all(self, rows: Array) -> Array:
-        """Extend rows over the coordinates of the layout to all coordinates, with zeros.
+        """Extend rows over the coordinates of the layout to all n coordinates of the model, with zeros
+        behind.
 
         Parameters
         ----------
@@ -192,12 +195,13 @@ class LinearModel:
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Return the indices of the coordinates that belong to a body.
+        """Return the indices of the coordinates that belong to a body, those of tilts and elastic waves
+        included.
 
         Parameters
         ----------
         name : str
-            Name of the body.
+            Name of the body, as in the labels before the colon.
 
         Returns
         -------
@@ -209,10 +213,14 @@ class LinearModel:
 
 
 class Bodies(Protocol):
-    """Function that adds to the linear model of rigid masses on springs."""
+    """Function that extends a linear model: by coordinates of bending gears, or by other directions of
+    forces.
+    """
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with coordinates added behind its own, or with other matrices."""
+        """Return the model with coordinates added behind its own, or with other matrices or rows; the
+        given model is not changed.
+        """
 
 
 def mass_diagonal(layout: Layout) -> Array:
@@ -290,7 +298,7 @@ def flank_jacobian(layout: Layout) -> Array:
 
 
 def _tilts(layout: Layout) -> list[Tilt]:
-    """Return the tilts of the gears that may tilt."""
+    """Return the tilts of the gears that may tilt, in the order of the gears."""
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
 
 

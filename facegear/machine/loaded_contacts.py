@@ -94,7 +94,8 @@ class LoadedContacts:
         return [None if np.isnan(force) else self._state(force) for force in self.rings]
 
     def any_undecided(self) -> bool:
-        """Whether some contact is neither open nor closed for certain.
+        """Whether some contact's force lies between the shares OPEN_SHARE and CLOSED_SHARE of the
+        largest.
 
         Returns
         -------

@@ -142,7 +142,9 @@ def machine_in_motion(machine: Machine) -> Machine:
 
 @lru_cache(maxsize=16)
 def _attached(bodies: ElasticGears, meshes: tuple[int, ...]) -> ElasticGears:
-    """Return the same bodies with coordinates attached; machines that share them share the result."""
+    """Return the bodies with a coordinate attached to each of `meshes` (numbers); machines that share
+    bodies share the result.
+    """
     return replace(bodies, attached=meshes)
 
 
@@ -309,7 +311,9 @@ def contact_table(machine: Machine, vibrating_machine: VibratingMachine, stiffne
 
 
 def _mesh_state(drive: Contact, back: Contact) -> str:
-    """Name the state of a mesh from the states of its two flanks."""
+    """Return the state of a mesh from those of its two flanks: drive, back, wedged (both closed), open or
+    undecided.
+    """
     if Contact.UNCERTAIN in (drive, back):
         return Contact.UNCERTAIN.value
     if drive is Contact.IN_CONTACT:

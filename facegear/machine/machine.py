@@ -46,7 +46,7 @@ class OpenFlanks(StrEnum):
 
     @property
     def is_damped_when_open(self) -> bool:
-        """Whether dampers act on open flanks, too."""
+        """Whether dampers act on open flanks, too: True for `always` and `mesh_deflection`."""
         return self in (OpenFlanks.ALWAYS, OpenFlanks.MESH_DEFLECTION)
 
 
@@ -207,8 +207,8 @@ class Machine:
 
     @cached_property
     def static_machine(self) -> "Machine":
-        """Machine without its drive line where static results with it follow from those without it, else this
-        machine.
+        """Machine without its drive line, if `DriveLine.extend_displacements` gives the static results
+        with it from those without it; else this machine.
         """
         line = self.drive_line
         if line is None or not line.static_from_layout(self.lumped_model):
@@ -349,7 +349,7 @@ def _machine_without_errors(
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
-    """Return the mesh frequency at a pinion speed.
+    """Return the mesh frequency at a pinion speed: pinion teeth * speed / 60.
 
     Parameters
     ----------

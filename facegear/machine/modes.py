@@ -150,7 +150,7 @@ AMPLITUDE_FRACTION = 0.01
 
 
 class ModeClass(StrEnum):
-    """Classes of section 3.1."""
+    """Classes of modes of section 3.1 of the source paper, by which bodies have the kinetic energy."""
 
     RIGID = "rigid body"
     PINION = "pinion"
@@ -160,7 +160,13 @@ class ModeClass(StrEnum):
 
 @dataclass(frozen=True)
 class ModeName:
-    """Class, symbols as `input, idler T-R; face gear T(y)`, fraction of the kinetic energy in the pinions."""
+    """Name of a mode.
+
+    - mode_class: which bodies move
+    - symbols: how they move, such as `input, idler T-R; face gear T(y)`; T: translation, R: rotation
+      about the own axis, A: motion along it
+    - pinion_energy_fraction: part of the kinetic energy in the pinions
+    """
 
     mode_class: ModeClass
     symbols: str
@@ -235,11 +241,12 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
 
 
 def _motion(moves: set[str]) -> str:
-    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of the coordinates that
-    move.
+    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of its coordinates
+    that move.
 
-    A single direction of translation is named, and so is a motion that the rigid body does not have, up to
-    its first blank.
+    T is translation, T(x) or T(y) in one direction alone, R rotation, A axial motion. A motion that the
+    rigid body does not have is named by its letters up to the first blank, such as n2 for two nodal
+    diameters.
     """
     letters = []
     if moves & {"x", "y"}:

@@ -84,7 +84,8 @@ def number_table(ratings: Ratings) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        Columns quantity (unit at its end) and value.
+        Columns quantity and value; rows gear_ratio, pinion_speed_rpm, gear_speed_rpm, mesh_frequency_hz,
+        power_in_kw, power_out_kw and power_imbalance.
     """
     rows = {
         "gear_ratio": ratings.ratio,

@@ -77,7 +77,7 @@ class TurnOrders:
 
     @property
     def of_mesh(self) -> Array:
-        """Frequency over that of the mesh (n,)."""
+        """Frequency of each order over that of the mesh, (n,): order / teeth."""
         return np.asarray(self.order / self.teeth)
 
 
@@ -135,7 +135,7 @@ def _errors_of(machine: Machine, gear: str) -> Machine:
 
 
 def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return zeros in place of two curves."""
+    """Return zeros in place of two curves (drive and back flank), of the same shapes."""
     return np.zeros_like(curves[0]), np.zeros_like(curves[1])
 
 
@@ -227,7 +227,10 @@ class LoadedMachine:
         return np.asarray(self.springs @ (self.linear.rows @ motion))
 
     def _dynamic(self, speed: float, omega: float) -> ComplexArray:
-        """Return the dynamic stiffness (n, n) at a pinion speed and a frequency, both in rad/s."""
+        """Return the dynamic stiffness (n, n) of coordinates, N/m, at a pinion speed and an excitation
+        frequency, both in rad/s: the bracket on the left of this module's equation, with the terms of
+        turning bodies.
+        """
         linear, rows = self.linear, self.linear.rows
         stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows

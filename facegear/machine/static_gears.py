@@ -47,7 +47,8 @@ def at_rest(machine: Machine) -> Machine:
 
 @dataclass(frozen=True, eq=False)
 class StaticGears:
-    """Gears of `elastic` by their static compliance alone.
+    """Gears of `elastic` by their whole static compliance, in place of their modes; called with a linear
+    model it adds their coordinates.
 
     Attributes
     ----------
@@ -61,7 +62,9 @@ class StaticGears:
     with_slopes: bool = False
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with the coordinates of every gear behind its own."""
+        """Return the model with coordinates of every gear behind its own, with unit stiffness and no
+        damping.
+        """
         model, layout = base_model, self.elastic.layout
         for gear, body in self.elastic.bodies.items():
             meshes = np.array([g == gear for _, g in layout.meshes])

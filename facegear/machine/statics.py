@@ -165,9 +165,12 @@ class Equilibrium:
 
 @dataclass(frozen=True, eq=False)
 class Equilibria:
-    """K positions: displacements (K, dof) in m and rad, flank_forces (K, 2 meshes) in N, drive flanks first.
+    """Static equilibria at K positions.
 
-    deflections (K, meshes): tangential, m. residual (K,): as in Equilibrium.
+    - displacements (K, dof): m and rad
+    - deflections (K, meshes): tangential part, as in `Equilibrium`, m
+    - flank_forces (K, 2 meshes): compressive forces, drive flanks first, N
+    - residual (K,): as in `Equilibrium`
     """
 
     displacements: Array

@@ -37,19 +37,23 @@ LISTED_ENERGY = 0.01
 
 @dataclass(frozen=True, eq=False)
 class TurningModes:
-    """m modes that vibrate: l (m,) in 1/s with positive imaginary part, ascending by it; shapes (n, m)."""
+    """m damped modes that vibrate.
+
+    - exponents (m,): eigenvalues l, 1/s, with positive imaginary part, ascending by it
+    - shapes (n, m): displacement part of the eigenvectors, of arbitrary scale
+    """
 
     exponents: ComplexArray
     shapes: ComplexArray
 
     @property
     def frequencies(self) -> Array:
-        """Hz, with damping."""
+        """Damped natural frequencies (m,): imaginary part of l over 2 pi, Hz."""
         return np.asarray(self.exponents.imag / (2.0 * np.pi))
 
     @property
     def damping_ratios(self) -> Array:
-        """Fraction of critical damping; negative for a mode that grows."""
+        """Damping ratios (m,), -Re l / |l|: fraction of critical damping; negative for a mode that grows."""
         return np.asarray(-self.exponents.real / np.abs(self.exponents))
 
 

@@ -86,8 +86,10 @@ class FlankContacts:
 
 @dataclass(frozen=True, eq=False)
 class TableError:
-    """Largest and rms difference of a table from contact solutions between its levels, over `force`, the
-    mean force (N) at its last level.
+    """Difference between a force table and contact solutions up to its last level.
+
+    rms, largest: root mean square and largest size over `force`, dimensionless; force: mean force at the
+    table's last level, N.
     """
 
     rms: float
@@ -96,17 +98,20 @@ class TableError:
 
     @property
     def percent(self) -> tuple[float, float]:
-        """Root mean square and largest error, percent."""
+        """Root mean square and largest error, in percent of `force`."""
         return 100.0 * self.rms, 100.0 * self.largest
 
     @property
     def excess(self) -> float:
-        """Larger of both errors over its goal, dimensionless."""
+        """Larger of rms / RMS and largest / LARGEST, dimensionless: up to 1 both errors meet their aims."""
         return max(self.rms / RMS, self.largest / LARGEST)
 
 
 def law_torques(largest: float) -> list[float]:
     """Return the torques at which contact is solved for a law that reaches the largest at every phase.
+
+    TORQUE_COUNT torques from LIGHTEST to 1 times REACH times the largest; their roots of degree 2
+    EXPONENT are evenly spaced.
 
     Parameters
     ----------

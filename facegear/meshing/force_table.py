@@ -40,8 +40,9 @@ class ForceTable:
 
     @cached_property
     def coefficients(self) -> Array:
-        """Coefficients of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2,
-        harmonics + 1).
+        """Coefficients (L, 4, 2, harmonics + 1) of the cubics, N/m^k for the power k = 0 to 3, by powers
+        of the compression beyond the level at which each piece begins; beyond the last level the square
+        and cube are 0.
         """
         return hermite(self.levels, self.forces, self.slopes)
 
@@ -61,7 +62,9 @@ class ForceTable:
 
     @cached_property
     def min_slope(self) -> float:
-        """Smallest slope at LOOKS phases for each harmonic and as many amounts between two levels, N/m."""
+        """Smallest slope of the force over compression, N/m, sampled at LOOKS phases for each harmonic
+        and at LOOKS + 1 even compressions in each piece.
+        """
         count = LOOKS * self.forces.shape[2]
         values = values_at(self.coefficients[:, 1:], np.arange(count) / count)
         first, second, third = np.moveaxis(values, 2, 0)[:, :, None]

@@ -39,21 +39,25 @@ class MeshLaw(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Phases from 0 to 1, in mesh periods, between which the law is smooth in the phase; (0,) where it is
-        smooth throughout.
+        """Phases from 0 to 1, in mesh periods, at which the law is not smooth in the phase; (0,) where it
+        is smooth throughout.
         """
 
     @property
     def levels(self) -> Array:
-        """Amounts (L, M) at which the pieces of the law begin, m, rising. The first row is zero, the edge."""
+        """Compressions (L, M), m, at which the pieces of the law begin, rising. The first row is zero,
+        the edge.
+        """
 
     @property
     def straight(self) -> bool:
-        """Whether the force is linear in the amount between two levels."""
+        """Whether the force of a compressed contact is linear in the compression."""
 
     @property
     def steepest(self) -> Array:
-        """Bound (M,) of the slope over phase and amount, N/m."""
+        """Upper bound (M,) of the derivative of the force by the compression, over phase and compression,
+        N/m.
+        """
 
     @property
     def harmonic_fractions(self) -> Array:
@@ -141,7 +145,9 @@ class MeshLaw(Protocol):
 
     @property
     def kernel_law(self) -> Any:
-        """The law for the integrator's kernels: one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
+        """The law as an object for the integrator's kernels: one of `Law` in
+        facegear/_kernels/src/motion/laws/all.hpp.
+        """
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:

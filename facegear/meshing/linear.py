@@ -105,7 +105,7 @@ class LinearLaw:
 
     @cached_property
     def _constant(self) -> Array | None:
-        """k (M,) where it does not depend on the phase."""
+        """Stiffness k (M,), N/m, where it does not depend on the phase, else None."""
         alone = self.fourier.shape[2] == 1 and not self.pieces
         return self.fourier[self.kind, 1, 0] if alone else None
 

@@ -149,7 +149,9 @@ class LoadDependentLaw:
 
     @cached_property
     def _bound_sizes(self) -> Array:
-        """Amplitudes (kinds, 2 L - 1, harmonics + 1) of the series that bound the slopes."""
+        """Amplitudes (kinds, 2 L - 1, harmonics + 1), N/m, of the series between whose extremes all
+        slopes lie.
+        """
         return amplitudes(slope_bounds(self._levels, self._coefficients))
 
     @cached_property
@@ -203,7 +205,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _pieces(self) -> PiecewiseCubics:
-        """Cubics between levels, evaluated at phases."""
+        """Cubics of all kinds, to be evaluated at phases and compressions, made once with their cache."""
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":

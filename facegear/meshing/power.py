@@ -71,7 +71,9 @@ class PowerLaw:
 
     @property
     def harmonic_fractions(self) -> Array:
-        """Fractions of the mean and of the first harmonic, (2,)."""
+        """Fractions (2,) of the slope's bound by the mean and by the first harmonic: 1 and depth, over 1
+        + depth.
+        """
         return np.array([1.0, self.depth]) / (1.0 + self.depth)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
@@ -150,7 +152,9 @@ class PowerLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Numbers of the law as the integrator's kernels take them."""
+        """Arguments of `motion.power_law`: factor (1, 2, 2), the series 1 + depth cos, sine part first;
+        size, exponent, level and number of contacts.
+        """
         return {
             "factor": np.array([[[0.0, 0.0], [1.0, self.depth]]]),
             "size": self.size,

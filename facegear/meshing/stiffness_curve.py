@@ -185,7 +185,7 @@ def unloaded_samples(ltca: pd.DataFrame) -> Array:
 
 
 def peak_to_peak(series: Harmonics) -> float:
-    """Return the peak-to-peak value of a series over a period.
+    """Return the range of a series over a period, from 64 evenly spaced points for each order.
 
     Parameters
     ----------

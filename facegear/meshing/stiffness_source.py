@@ -324,12 +324,14 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
 
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
-    """Return the curve of the series that the config gives.
+    """Return the tables of the stiffness series that the config gives, without contact analysis.
+
+    The curve has CURVE_POINTS points and the varied series with all orders.
 
     Parameters
     ----------
     request : StiffnessRequest
-        The series and the orders kept.
+        The series, the factor on its variation and the orders kept.
 
     Returns
     -------

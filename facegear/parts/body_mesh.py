@@ -27,16 +27,16 @@ QUADRANGLE = 3
 
 @dataclass(frozen=True, eq=False)
 class BodyMesh:
-    """Straight-sided quadrilaterals.
+    """Mesh of a section with straight-sided quadrilaterals.
 
     Attributes
     ----------
     nodes : (n, 2)
         r and height, m.
     quads : (e, 4)
-        Corners of each.
+        Nodes at the corners of each quadrilateral, going round.
     in_layer : (e,)
-        Which belong to the layer of teeth.
+        Whether each belongs to the layer of teeth.
     """
 
     nodes: Array

@@ -67,12 +67,12 @@ class Elements:
 
 
 def elements_of(mesh: BodyMesh) -> Elements:
-    """Return the elements of a mesh.
+    """Return the quadratic elements of a mesh at their quadrature points.
 
     Parameters
     ----------
     mesh : BodyMesh
-        The mesh.
+        Mesh of quadrilaterals; each gets 9 shapes, with nodes at corners, middles of edges and centre.
 
     Returns
     -------
@@ -148,7 +148,8 @@ def gradients(elements: Elements) -> tuple[Array, Array]:
 
 
 def displacements(elements: Elements) -> Array:
-    """Return the displacements U, V, W of the shape functions in radial, circumferential and axial direction.
+    """Return the displacements U (radial), V (round the axis) and W (axial) of the shapes at the
+    quadrature points.
 
     Parameters
     ----------
@@ -158,7 +159,7 @@ def displacements(elements: Elements) -> Array:
     Returns
     -------
     (3, 27, elements, points) array
-        m/m.
+        m/m; columns as `Elements.dofs`.
     """
     return operator([{part: elements.value} for part in (U, V, W)])
 

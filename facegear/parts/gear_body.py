@@ -189,6 +189,8 @@ class SolvedBody:
     def static(self, patch: Patch) -> Array:
         """Return the static compliances H_n at a mesh by circumferential order, with the hub held.
 
+        H_n maps unit forces along the axis and round it to W_p and V_p of the pitch point.
+
         Parameters
         ----------
         patch : Patch
@@ -197,7 +199,7 @@ class SolvedBody:
         Returns
         -------
         (orders, 2, 2) array
-            m/N.
+            m/N, from order 0 to the last that a load needs.
         """
         return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
 
@@ -375,7 +377,9 @@ def reduced_body(
 
 
 def _blocks(matrices: list[Array]) -> Array:
-    """Arrange matrices along the diagonal of one matrix; matrices without entries take no place."""
+    """Return matrices (m_i, m_i) along the diagonal of one matrix, zero elsewhere; empty matrices take no
+    place.
+    """
     size = sum(len(matrix) for matrix in matrices)
     return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
         size, size

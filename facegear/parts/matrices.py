@@ -166,7 +166,7 @@ def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
 
 
 def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> Polynomial:
-    """Assemble the stiffness K of every order alone.
+    """Assemble the elastic stiffness K of every order, without mass, rotation and supports.
 
     Parameters
     ----------

@@ -54,17 +54,21 @@ class OrderModes:
 
     @property
     def gyroscopic_factors(self) -> Array:
-        """c = g / M of each mode, (m,)."""
+        """c = g / M of each mode by itself, (m,), dimensionless: the diagonal of `coriolis`."""
         return np.diagonal(self.coriolis)
 
     @property
     def stiffening_factors(self) -> Array:
-        """B = (S - P) / M of each mode, (m,)."""
+        """B = (S - P) / M of each mode by itself, (m,), dimensionless: B W^2 is added to the squared
+        frequency.
+        """
         return np.diagonal(self.stress - self.centrifugal)
 
     @property
     def torsional(self) -> Array:
-        """Fraction of each mode's mass that moves round the axis, (m,)."""
+        """Fraction (m,) of the sum of squares of each shape's entries that lies in motion round the axis,
+        0 to 1.
+        """
         return (self.shapes[V::3] ** 2).sum(axis=0) / (self.shapes**2).sum(axis=0)
 
 
@@ -90,6 +94,7 @@ def held_solver(body: BodyMatrices, order: int) -> Solve:
     solve = solver(body.stiffness.at(order)[free][:, free])
 
     def displacements(loads: Array) -> Array:
+        """Return displacements (dofs, ...) by loads of the same shape; 0 on held degrees of freedom."""
         result = np.zeros(loads.shape)
         result[free] = solve(loads[free])
         return result
@@ -139,6 +144,7 @@ def order_modes(
     stiffness = body.stiffness.at(order)[free][:, free].tocsr()
 
     def inverse(loads: Array) -> Array:
+        """Return the displacements (f,) of the free degrees of freedom by loads (f,) on them."""
         whole = np.zeros(body.elements.size)
         whole[free] = loads
         return solve(whole)[free]

@@ -111,14 +111,14 @@ class ReducedBody:
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
-        """Read the body of a gear from the arrays that `arrays` gave.
+        """Read the body of a gear from the arrays that the method `arrays` returned.
 
         Parameters
         ----------
         arrays : Mapping[str, AnyArray]
-            Arrays (...) by name, SI units.
+            Arrays (...) by the names gear_field, such as upper_frequency, SI units.
         gear : str
-            Name of the gear.
+            Name of the gear, with which the names of the arrays begin.
 
         Returns
         -------
@@ -128,7 +128,7 @@ class ReducedBody:
         return cls(**{entry.name: arrays[f"{gear}_{entry.name}"] for entry in fields(cls)})
 
     def arrays(self, gear: str) -> dict[str, AnyArray]:
-        """Return all fields as arrays.
+        """Return all fields as arrays to be stored.
 
         Parameters
         ----------
@@ -138,7 +138,7 @@ class ReducedBody:
         Returns
         -------
         dict of str to array of any shape (...)
-            SI units.
+            By the names gear_field, SI units.
         """
         return {f"{gear}_{entry.name}": getattr(self, entry.name) for entry in fields(self)}
 

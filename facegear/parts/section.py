@@ -40,7 +40,8 @@ class Layer:
     taper: float = 0.0
 
     def density_at(self, height: Array) -> Array:
-        """Return the fraction of the body's density at heights.
+        """Return the layer's fraction of the body's density at heights, linear from the roots to the tips
+        by `taper`.
 
         Parameters
         ----------
@@ -61,7 +62,7 @@ class Layer:
 
     @property
     def corners(self) -> Array:
-        """Corners (4, 2), m."""
+        """Corners of the layer, (4, 2): r and height, anticlockwise, m."""
         return rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
 
 
@@ -94,7 +95,7 @@ class Section:
 
     @property
     def edges(self) -> Array:
-        """First and last point of each edge, (n, 2, 2)."""
+        """First and last point of each edge, (n, 2, 2): edge, point, r and height; m."""
         return np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
 
 
@@ -278,6 +279,9 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
     r, height = np.moveaxis(first + points * (last - first), -1, 0)
 
     def integral(values: Array, degree: int) -> float:
+        """Return the integral over the polygon of a form of a degree, given at the edges' points (points,
+        edges).
+        """
         return float(double @ (0.5 * GAUSS[1] @ values)) / (degree + 2)
 
     mass = 2.0 * np.pi * density * integral(r, 1)

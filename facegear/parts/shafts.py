@@ -76,7 +76,7 @@ class Segment:
         return 6.0 * (1.0 + poisson) * squared / below
 
     def torsional_stiffness(self, material: Elasticity) -> float:
-        """Return the torsional stiffness.
+        """Return the torsional stiffness of the segment, G times polar second moment over length.
 
         Parameters
         ----------
@@ -168,8 +168,12 @@ class Bearing:
 
 @dataclass(frozen=True, eq=False)
 class Shaft:
-    """Segments from the end at the smallest z on, what they are made of, bearings, and where the pinion's
-    middle is, m from the beginning.
+    """A stepped shaft on bearings that carries a pinion.
+
+    - segments: from the end at the smallest z on
+    - material: elasticity of all segments
+    - bearings: at their distances from that end
+    - pinion: distance of the pinion's middle from that end, m
     """
 
     segments: tuple[Segment, ...]
@@ -223,17 +227,17 @@ class CondensedShaft:
         return _symmetric(np.linalg.inv(self.compliance[:3, :3]))
 
     def bearing_loads(self, loads: Array) -> Array:
-        """Return the loads on the bearings by the loads of the pinion on the shaft.
+        """Return the loads of the shaft on its bearings by the loads of the pinion on the shaft.
 
         Parameters
         ----------
         loads : (..., 5) array
-            N and N m.
+            x, y, z, tilt_x, tilt_y at the pinion's middle, N and N m.
 
         Returns
         -------
         (..., bearings, 5) array
-            N and N m.
+            In the same order at each bearing, N and N m.
         """
         return np.einsum("bij,...j->...bi", self.reactions, loads)
 

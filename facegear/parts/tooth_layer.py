@@ -270,6 +270,9 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
     target_energies = tooth_energies(design, section.material, rim, ORDER)
 
     def ratios(logarithms: Array) -> Array:
+        """Return the logarithms (2,) of energies of layer over teeth, by the logarithms (2,) of `hoop`
+        and `shear`.
+        """
         hoop, shear = np.exp(logarithms)
         return np.log(layer_energies(replace(layer, hoop=hoop, shear=shear), section, rim) / target_energies)
 

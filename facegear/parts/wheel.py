@@ -116,7 +116,8 @@ def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[f
 
 
 def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
-    """Raise InvalidInput unless the hub lies inside the rim and the web ends on both.
+    """Raise InvalidInput unless bore, hub and rim follow each other outwards and the web ends within the
+    faces of both hub and rim.
 
     Parameters
     ----------
@@ -245,7 +246,7 @@ class Patch:
         return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
 
     def compliance(self, order: int, below: Array) -> Array:
-        """Return H_n: motions W_p and V_p by unit loads on them.
+        """Return H_n: W_p and V_p at a mesh (rows) by unit forces along the axis and round it (columns).
 
         Parameters
         ----------

@@ -60,7 +60,8 @@ class MeshEnergy:
     by_angle: float
 
     def with_stiffness_factor(self, factor: float) -> "MeshEnergy":
-        """Return the energy of teeth that are so many times as stiff, at the same force.
+        """Return the energy of teeth that are `factor` times as stiff, at the same force: all but the
+        force are divided by the factor.
 
         Parameters
         ----------

@@ -158,8 +158,8 @@ class PoseSurface:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """Surface as named arrays that `of_arrays` reads again, with the shapes of SURFACE_ARRAYS, in SI
-        units.
+        """Surface as named arrays that `of_arrays` reads again, SI units: those of SURFACE_ARRAYS and all
+        other `values`.
         """
         errors = self.nominal
         return {
@@ -174,12 +174,12 @@ class PoseSurface:
 
     @classmethod
     def of_arrays(cls, arrays: Arrays) -> Self:
-        """Read a surface from what `arrays` gives.
+        """Read a surface from the arrays that the property `arrays` gives.
 
         Parameters
         ----------
         arrays : Arrays
-            Arrays by name.
+            Arrays by name, as SURFACE_ARRAYS; further QUANTITIES are read where they are present.
 
         Returns
         -------

@@ -317,7 +317,9 @@ def leaving_text(exits: pd.DataFrame) -> str:
 
 
 def _at_load(machine: Machine, surface: PoseSurface, fraction: float) -> OperatingPose | None:
-    """Return the pose at a fraction of the load, None where it lies beyond the surface or is not found."""
+    """Return the operating pose at a fraction of the mean torques; None where it lies beyond the surface
+    or the iteration does not converge.
+    """
     try:
         return operating_pose(scaled_load(machine, fraction), surface)
     except (InvalidInput, NotConverged):
