@@ -25,23 +25,26 @@ KERNELS: Mapping[type, Callable[..., Any]] = {
 
 
 class Springs(NamedTuple):
-    """One-sided flanks, bearings and forces of a machine. All unknowns are lengths.
+    """One-sided flanks, bearings and forces of a machine, as the compiled solver takes them. SI units.
 
-    F flanks, P pinions, n unknowns: x, y, turn of every pinion, then w of every gear. N, m.
+    All n unknowns are lengths: x, y and turn of each of P pinions, then w unknowns of every gear, then
+    any others. There are F flanks.
 
     Attributes
     ----------
     jacobian : (F, 3 + w)
-        By the unknowns of the flank's pinion and its gear.
+        Derivative of each flank's deflection by the three unknowns of its pinion, then by the w from
+        `gear` on.
     pinion, gear : (F,)
-        First unknown of that pinion and of that gear.
+        Index of the first unknown of that pinion and of that gear; if flanks depend on more than
+        one gear, of the first unknown behind the pinions, with w = n - 3 P.
     pinion_bearing : (P, 3)
         Stiffness xx, xy, yy, N/m.
     clearance : (P,)
         Clearance of the bearing, m. Where it is positive, xx = yy and xy = 0.
     core_row, core_column, core_value : (E,)
-        Entries, row <= column, of the symmetric stiffness among the other n - 3 P unknowns, counted from the
-        first of them, N/m.
+        Entries, row <= column, of the symmetric stiffness among the other n - 3 P unknowns, counted from
+        the first of them, N/m.
     loads : (n,)
         Forces on the unknowns, N.
     """

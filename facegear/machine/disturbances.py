@@ -26,7 +26,8 @@ WHOLE = 1e-9
 
 @dataclass(frozen=True)
 class Excitation:
-    """Torque `amplitude` cos(order turns + phase) beside the mean torque of a body.
+    """Torque amplitude * cos(order * turns + phase) beside the mean torque of a body, `turns` its
+    rotation in rad.
 
     Attributes
     ----------
@@ -35,7 +36,7 @@ class Excitation:
     order : float
         Vibrations in one turn of the body, dimensionless.
     teeth : int
-        Of the body.
+        Number of teeth of the body.
     amplitude : float
         N m.
     phase : float

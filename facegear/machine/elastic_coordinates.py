@@ -53,7 +53,10 @@ class Coordinates:
 
 
 def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
-    """Return the elastic coordinates of a gear with meshes at given angles.
+    """Return the elastic coordinates of a gear with meshes at given angles, from its modes.
+
+    Matrices of rotation are those for a speed of the body of 1 rad/s, in the frame that stands still in
+    space.
 
     Parameters
     ----------

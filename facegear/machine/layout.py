@@ -203,8 +203,8 @@ class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
-    `kinematics` says what `pinion_radius` and `gear_radius` are. What follows from the fields is kept; its
-    arrays are only read.
+    `kinematics` says what `pinion_radius` and `gear_radius` are. Properties are computed once; their
+    arrays are shared and must not be changed.
     """
 
     pinions: tuple[Pinion, ...]

@@ -52,7 +52,11 @@ class OpenFlanks(StrEnum):
 
 @dataclass(frozen=True)
 class Damping:
-    """Mesh damping (N s/m), mass damping lambda (1/s) and bearing damping beta (s) of equation (21)."""
+    """Damping of a machine, equation (21).
+
+    mesh: damping along the line of action, N s/m; mass: lambda, factor of the mass matrix, 1/s; bearing:
+    beta, factor of the bearing stiffness, s; open_flanks: where mesh damping acts.
+    """
 
     mesh: float
     mass: float

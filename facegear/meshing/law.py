@@ -202,18 +202,19 @@ class LinearHeld(NamedTuple):
 
 
 class LoadDependentHeld(NamedTuple):
-    """Load-dependent law of M contacts at K phases.
+    """Load-dependent law of M contacts at K phases, as the compiled statics takes it.
 
     Attributes
     ----------
     stiffness : (K, M)
-        Bounds of the slopes, N/m.
+        Upper bounds of the slopes, N/m.
     cosine, sine : (K, harmonics + 1)
-        Of the multiples of the phases.
+        cos and sin of 2 pi times order times phase.
     table : (kinds, levels, harmonics + 1, 2, 4)
-        Series of the cubics' coefficients, sine part first, by powers of the amount since the level, N and m.
+        Series of the cubics' coefficients, sine part first, by powers of the compression since the level,
+        N and m.
     levels : (kinds, levels)
-        Amounts at which the cubics begin, m.
+        Compressions at which the cubics begin, m.
     kind : (M,)
         Row of the table of each contact.
     """

@@ -65,7 +65,8 @@ class LoadTable:
         return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:
-        """Return the largest relative change of the curve if the nearest inner torque had not been solved.
+        """Return the largest relative change of the curve if the solved inner torque nearest to `torque`
+        were left out.
 
         Parameters
         ----------

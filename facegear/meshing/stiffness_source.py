@@ -213,18 +213,19 @@ class Stiffness:
 
 @dataclass(frozen=True, eq=False)
 class ContactCurve:
-    """k(t) at a load of the contact analysis, N/m.
+    """Mesh stiffness k(t) at one load of the contact analysis, N/m.
 
     Attributes
     ----------
     table
         Stiffness over positions and torques that it was taken from.
     samples, fit
-        At the positions solved, and their series, before both are scaled.
+        Stiffness at the positions solved (p,), and its Fourier fit, both before `scale`.
     scale
-        Factor on both that the request asks for.
+        Factor on both that the request asks for: 1, or requested mean over the fit's mean for fem_scaled.
     whole, series
-        Scaled and varied, with all orders and with those kept.
+        Series times `scale`, its variation times the request's factor: with all orders, and with those
+        kept.
     error, error_cut
         Unloaded transmission error of the same orders (m), and what the cut misses of it (m).
     """

@@ -220,15 +220,17 @@ def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes:
 def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
     """Return the frequencies at which the waves of each mode pass a point in space.
 
-    Forward waves travel as the body turns. Modes of an order are taken one by one, f = sqrt(w^2 + (B + c^2)
-    W^2) / 2 pi, f +- (n + c) W / 2 pi; order 0 has no waves, so both are f.
+    Forward waves travel as the body turns. Modes of an order n are taken one by one: with w the angular
+    frequency at rest, c and B its `gyroscopic_factors` and `stiffening_factors` and W the speed, they are
+    f +- (n + c) W / 2 pi with f = sqrt(w^2 + (B + c^2) W^2) / 2 pi. Order 0 has no waves, so both are f
+    with c = 0.
 
     Parameters
     ----------
     modes : OrderModes
         The m modes of one order.
     speed : float
-        Speed of the body, rad/s.
+        Speed of the body, rad/s; its sign does not matter.
 
     Returns
     -------
@@ -245,7 +247,8 @@ def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
 def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array, Array]:
     """Return the speeds of the body at which a harmonic of the mesh frequency meets each wave.
 
-    k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for W.
+    k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for the
+    speed W; w, B, c and n are those of `wave_frequencies`.
 
     Parameters
     ----------

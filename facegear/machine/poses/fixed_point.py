@@ -93,7 +93,11 @@ def operating_pose(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """Compute the fixed point under the machine's mean torques, to TOLERANCE.
+    """Compute the pose of a machine under its mean torques, by fixed-point iteration.
+
+    Each step solves the equilibrium with mean stiffness and no e(t), then sets stiffness factors,
+    closures and directions of the flanks by the poses found, until no mesh force changes by more than
+    TOLERANCE of the largest.
 
     Parameters
     ----------
@@ -189,7 +193,9 @@ def pose_at(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """Return the machine with the poses of an equilibrium, one step of `operating_pose`.
+    """Return the machine with the poses of a given equilibrium, one step of `operating_pose`.
+
+    Its forces, poses and torques are those of the equilibrium, which is not solved again.
 
     Parameters
     ----------
@@ -198,7 +204,7 @@ def pose_at(
     surface : PoseSurface
         Contact over the pose.
     at_rest : Equilibria
-        Equilibrium of a machine of `with_ideal_directions`.
+        Equilibrium of a machine of `with_ideal_directions`; its first position is taken.
     load : float or None
         Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
     ideal : bool
@@ -207,7 +213,7 @@ def pose_at(
     Returns
     -------
     OperatingPose
-        SI units.
+        SI units; `steps` and `change` are 0.
 
     Raises
     ------
@@ -357,16 +363,17 @@ ERROR_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class CarryingPairs:
-    """Different pairs of a machine.
+    """Different tooth pairs of a machine at a pose, so that each is analysed once.
 
     Attributes
     ----------
     designs
-        Each pair, its assembly that of the pose.
+        The pair of each different flank, pose and torque; its drive flank carries, its assembly is that
+        of the pose.
     torques
-        Torque of each on the pinion, N m; 0 where it carries none.
+        Torque of each pair on the pinion, N m; 0 where it carries none.
     numbers : (m,)
-        Index of the pair of the carrying flank of each mesh, of the drive flank where none carries.
+        For each mesh the index of its carrying flank's pair, of its drive flank's where none carries.
     """
 
     designs: list[PairDesign]
