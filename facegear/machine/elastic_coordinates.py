@@ -34,7 +34,7 @@ class Coordinates:
     rows : (2 meshes of the gear, k)
         Derivative of the deflections of its flanks, drive flanks first.
     slopes : (2, meshes of the gear, k)
-        Of the rim below each, as `LinearModel.slopes`.
+        Slopes of the rim below each mesh by the coordinates, as `LinearModel.slopes`.
     lengths : (k,)
         Motion of the pitch point by a unit of each, m.
     """

@@ -100,7 +100,7 @@ class Imperfections:
     stiffness : (meshes,)
         Factor on k(t).
     teeth
-        What single teeth add, alike on all pinions and on both gears.
+        Errors of single teeth, the same on all pinions and on both gears.
     series
         e(t) of a mesh by its index, in place of the common one.
     position : (pinions, 2)

@@ -82,7 +82,7 @@ class LinearModel:
     spin
         What turning bodies add, None for nothing.
     slopes : (2, meshes, n)
-        Of the height W of the rim below each mesh, towards the teeth, by the coordinates of gears that bend:
+        Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
         dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
     """
 

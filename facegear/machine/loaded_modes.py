@@ -47,8 +47,8 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
     """Compute the modes at a pinion speed with the stiffness of the flanks that carry load.
 
     The stiffness is the mean of each flank, or its slope under the load where it depends on the load.
-    Bearings with clearance have the stiffness that they have under load. An open mesh stays open, a wedged
-    one has both flanks; undecided contacts count as open.
+    Bearings with clearance have their tangent stiffness under load. An open mesh stays open, a wedged one
+    (both flanks press) has both; undecided contacts count as open. Damping is left out.
 
     Parameters
     ----------
@@ -112,7 +112,9 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
 
 
 def machine_in_motion(machine: Machine) -> Machine:
-    """Return the machine as it moves: flanks of wedged meshes coupled by what the modes leave out.
+    """Return the machine as it moves: with a coordinate attached to each mesh whose two flanks both press.
+
+    The coordinate couples the flanks by the compliance of the gear that its modes leave out.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Forces and slopes of one contact over the amount pressed in, with Fourier series over the phase.
+"""Forces and slopes of one contact over its compression, with Fourier series over the phase.
 
-Between two levels of the amount the force is the cubic that has force and slope of the table at both
+Between two levels of the compression the force is the cubic that has force and slope of the table at both
 (Hermite), at every phase; so are its coefficients Fourier series. Beyond the last level it goes on straight.
 """
 
@@ -18,7 +18,7 @@ LOOKS = 8
 
 @dataclass(frozen=True, eq=False)
 class ForceTable:
-    """Forces and slopes of one contact at L levels of the amount pressed in.
+    """Forces and slopes of one contact at L levels of its compression.
 
     levels (L,) in m, rising from 0; forces (L, 2, harmonics + 1) in N and slopes of the same shape in N/m:
     Fourier series in the phase, sine part first. Forces are zero at the first level. Raises ValueError for

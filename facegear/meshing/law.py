@@ -24,13 +24,13 @@ class LawAtPhases(Protocol):
 class MeshLaw(Protocol):
     """Elastic forces of M contacts.
 
-    A force depends on the phase in the mesh period and on how far the contact is pressed in beyond its edge;
+    A force depends on the phase in the mesh period and on the compression of the contact beyond its edge;
     it is zero, and begins with slope zero or more, at the edge. Where the two flanks of a mesh share one line
-    of action they are one contact, which is pressed in by a negative amount on its back flank: the law is odd
+    of action they are one contact, with a negative compression on its back flank: the law is odd
     there. The arguments of the methods:
 
     - cycles (K,): mesh periods since the start;
-    - beyond (..., K, M): how far each contact is pressed in, m; forces in N, slopes in N/m.
+    - beyond (..., K, M): compression of each contact, m; forces in N, slopes in N/m.
     """
 
     @property
@@ -82,7 +82,7 @@ class MeshLaw(Protocol):
         """
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
@@ -94,11 +94,11 @@ class MeshLaw(Protocol):
         Returns
         -------
         (..., K, M) array
-            N/m; zero where nothing is pressed in.
+            N/m; zero where the compression is zero.
         """
 
     def mean(self) -> "MeshLaw":
-        """Return the law averaged over the mesh period at fixed amounts.
+        """Return the law averaged over the mesh period at fixed compressions.
 
         Returns
         -------
@@ -151,7 +151,7 @@ class MeshLaw(Protocol):
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:
-    """Return how often contacts are pressed in past the last level of a law.
+    """Return the fraction of positions at which contacts are compressed past the last level of a law.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def past_levels(law: MeshLaw, beyond: Array) -> Array:
 
 
 def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
-    """Return how far contacts are pressed in: above `upper`, or below `lower` as a negative amount.
+    """Return the compression of contacts: deflection above `upper`, or negative below `lower`, else 0.
 
     A contact with lower >= upper is never open; both directions count from `upper`.
 

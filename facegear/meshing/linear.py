@@ -1,4 +1,4 @@
-"""The linear law: a stiffness that depends on the phase, times the amount pressed in."""
+"""The linear law: a stiffness that depends on the phase, times the compression."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -130,7 +130,7 @@ class LinearLaw:
         return values[:, self.kind]
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Return k times the amounts.
+        """Return k times the compressions.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class LinearLaw:
         return beyond * (self.stiffness(cycles) if self._constant is None else self._constant)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return k where a contact is pressed in, 0 elsewhere.
+        """Return k where the compression is not zero, 0 elsewhere.
 
         Parameters
         ----------

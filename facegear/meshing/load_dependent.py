@@ -121,7 +121,7 @@ class LoadDependentLaw:
 
     @cached_property
     def levels(self) -> Array:
-        """Amounts (L, M) at which the pieces begin, m."""
+        """Compressions (L, M) at which the pieces begin, m."""
         return self._levels[self.kind].T
 
     @property
@@ -187,7 +187,7 @@ class LoadDependentLaw:
         return self._pieces.at(self.kind, cycles, beyond)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
@@ -199,7 +199,7 @@ class LoadDependentLaw:
         Returns
         -------
         (..., K, M) array
-            N/m; zero where nothing is pressed in.
+            N/m; zero where the compression is zero.
         """
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 

@@ -84,7 +84,7 @@ class PowerLaw:
         cycles : Array
             Mesh periods since the start (K,), dimensionless.
         beyond : Array
-            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+            Compressions of the contacts (..., K, M), m; negative on a back flank.
 
         Returns
         -------
@@ -94,14 +94,14 @@ class PowerLaw:
         return np.asarray(self._factor(cycles)[:, None] * np.sign(beyond) * self._shape(np.abs(beyond)))
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
         cycles : Array
             Mesh periods since the start (K,), dimensionless.
         beyond : Array
-            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+            Compressions of the contacts (..., K, M), m; negative on a back flank.
 
         Returns
         -------

@@ -283,7 +283,7 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
 def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
     """Return `curve_from_contact` as tables.
 
-    Beside the harmonics stand the means of both definitions at that load, scaled alike.
+    The table of harmonics also has the means of both definitions at that load, times the same scale.
 
     Parameters
     ----------

@@ -35,13 +35,13 @@ class ReducedBody:
     stiffness_damping : ()
         Factor beta of the stiffness in the damping D = beta K of the steel, s, beside the former.
     pitch_height : ()
-        Of the pitch plane over height 0, m.
+        Height of the pitch plane over height 0, m.
     slope : (m,)
         Slope dW/dr of the rim below the teeth, 1/m; of a body without this none.
     leaning : (orders, 3)
         W_p, V_p (1/N) and slope (rad/(N m)) by a unit moment on the slope, with all modes there are.
     mass, moment : ()
-        Of the section, kg, and that times the height of its centre, kg m.
+        Mass of the section, kg, and mass times the height of its centre, kg m.
     """
 
     order: Integers

@@ -192,7 +192,7 @@ class MeshPlace:
     gear
         Upper or lower.
     azimuth
-        Of the pinion, rad.
+        Angle of the pinion about the gears' axis, rad.
     tilt_height
         Height over the pinion's axis, towards the gear, of the point about which the gear tilts, m.
     """

@@ -1,7 +1,7 @@
 """Flanks of all meshes at a pose: energy, force, law and reactions.
 
 The energy of a mesh in contact over its pose: force, law and reactions come from one function. Averaged over
-a mesh cycle, a mesh that is pressed in by x with its unloaded contact at y and an error g of the shaft angle
+a mesh cycle, a mesh that is compressed by x with its unloaded contact at y and an error g of the shaft angle
 stores
 
     U(x, y, g) = max over F of [x F - G(F, y, g)],   G(F, y, g) = integral of F' / k(F', y, g) from 0 to F,
