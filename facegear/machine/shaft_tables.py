@@ -185,7 +185,7 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 
 
 def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
-    """Return torque and twist of the torsional springs.
+    """Return torque and twist of the torsional springs under the mean torques.
 
     Parameters
     ----------
@@ -197,9 +197,9 @@ def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring,
-        twist_deg of it, windup_deg of it and of all before it, and frequency_hz of the chain by itself, the
-        body free.
+        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring
+        (that of the body), twist_deg of that spring, windup_deg of it and of all springs before it, and
+        frequency_hz of the body with its chain alone: the k-th frequency in the row of mass k.
     """
     rows = []
     for body, _, chain in line.chains():
@@ -214,7 +214,10 @@ def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
 
 
 def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]) -> Array:
-    """Return the natural frequencies of a body and its chain in the open, without the zero.
+    """Return the natural frequencies of a body and its chain of turning masses, free of all meshes and
+    bearings.
+
+    The zero frequency of their common rotation is left out.
 
     Parameters
     ----------
@@ -228,7 +231,7 @@ def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]
     Returns
     -------
     (masses,) array
-        Hz.
+        Hz, rising.
     """
     inertias = np.array([line.layout.bodies[body].inertia, *(mass.inertia for mass in chain)])
     stiffness = np.zeros((inertias.size, inertias.size))
