@@ -25,14 +25,16 @@ class Assembly:
     Attributes
     ----------
     misfit
-        m along the line of action, how far the teeth of its lower mesh stand ahead of the gear's, with the
-        upper mesh in place and the lower gear where most pinions fit; positive closes the drive flank.
+        m along the line of action: how far the teeth of its lower mesh stand ahead of the gear's, with
+        the upper mesh in place and the lower gear at the middle of the range in which most pinions fit;
+        positive closes the drive flank.
     clearance
-        m, what its backlashes take up to either side.
+        m, misfit to either side that half the backlash of both meshes and the bearing's clearance take
+        up; infinite with one gear.
     fits
-        Whether it mounts together with the others.
+        Whether it can be mounted together with the others.
     below, above
-        The nearest angles without misfit, in pitches.
+        The nearest angles without misfit, in pitches of the face gear; the pinion's own with one gear.
     """
 
     misfit: Array
@@ -83,7 +85,11 @@ def _without_errors(layout: Layout, half_backlash: Array, clocking: Array) -> As
 def _assembly(
     layout: Layout, half_backlash: Array, clocking: Array, errors: Imperfections | None
 ) -> Assembly:
-    """Compute which teeth meet, the play of each pinion, and whether its teeth can mesh."""
+    """Compute `assembly` for given clocking (pinions,), in pitches; half_backlash (meshes,), m.
+
+    The reference is the pinion with whose teeth those of most others agree within their play. Pinions
+    that agree with it fit if one position of the lower gear suits all of them (`_all_together`).
+    """
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
     if len(layout.gears) < 2:
@@ -111,6 +117,9 @@ def _assembly(
 def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
     """Return how much deeper a pinion stands in each mesh than backlash and clearance allow.
 
+    It is sin(pressure angle) times (shift of the pinion's bearing towards the gear, less its clearance),
+    less half the backlash.
+
     Parameters
     ----------
     layout : Layout
@@ -123,7 +132,8 @@ def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfecti
     Returns
     -------
     (meshes,) array
-        m; positive where both flanks of a tooth would be pressed with the machine at rest.
+        m along the line of action; positive where both flanks of a tooth would be pressed with the
+        machine at rest.
     """
     sine = np.sin(layout.pressure_angle)
     side = np.array([[gear.sign] for gear in layout.gears])
@@ -132,13 +142,16 @@ def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfecti
 
 
 def _wrap_pitches(pitches: Array) -> Array:
-    """Return the remainder to the nearest whole number of pitches."""
+    """Return pitches less their nearest whole number, within -0.5 to 0.5, of the same shape."""
     return pitches - np.round(pitches)
 
 
 def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
-    """Return which candidates (pinions,) can mesh at one common position of the lower gear, chosen by rising
-    |left|.
+    """Return which candidates (pinions,) can mesh at one common position of the lower gear.
+
+    left, reach (pinions,): misfit and play of each pinion, in pitches; it meshes where the gear stands
+    within left +- reach. Candidates are added by rising |left| as long as all intervals have a point in
+    common.
     """
     fits = np.zeros(left.size, bool)
     low, high = -np.inf, np.inf

@@ -25,23 +25,26 @@ KERNELS: Mapping[type, Callable[..., Any]] = {
 
 
 class Springs(NamedTuple):
-    """One-sided flanks, bearings and forces of a machine. All unknowns are lengths.
+    """One-sided flanks, bearings and forces of a machine, as the compiled solver takes them. SI units.
 
-    F flanks, P pinions, n unknowns: x, y, turn of every pinion, then w of every gear. N, m.
+    All n unknowns are lengths: x, y and turn of each of P pinions, then w unknowns of every gear, then
+    any others. There are F flanks.
 
     Attributes
     ----------
     jacobian : (F, 3 + w)
-        By the unknowns of the flank's pinion and its gear.
+        Derivative of each flank's deflection by the three unknowns of its pinion, then by the w from
+        `gear` on.
     pinion, gear : (F,)
-        First unknown of that pinion and of that gear.
+        Index of the first unknown of that pinion and of that gear; if flanks depend on more than
+        one gear, of the first unknown behind the pinions, with w = n - 3 P.
     pinion_bearing : (P, 3)
         Stiffness xx, xy, yy, N/m.
     clearance : (P,)
         Clearance of the bearing, m. Where it is positive, xx = yy and xy = 0.
     core_row, core_column, core_value : (E,)
-        Entries, row <= column, of the symmetric stiffness among the other n - 3 P unknowns, counted from the
-        first of them, N/m.
+        Entries, row <= column, of the symmetric stiffness among the other n - 3 P unknowns, counted from
+        the first of them, N/m.
     loads : (n,)
         Forces on the unknowns, N.
     """
@@ -76,7 +79,7 @@ def has_kernel(law: LawAtPhases) -> bool:
 def settle_all(
     springs: Springs, law: LawAtPhases, gap: Array, tolerance: float, start: Array
 ) -> tuple[Array, Array, Array]:
-    """Settle a machine at K positions, each from where the one before was found.
+    """Compute the equilibrium of a machine at K positions, each search starting at the solution before.
 
     Parameters
     ----------
@@ -85,20 +88,21 @@ def settle_all(
     law
         Law of the flanks at K phases, one that `has_kernel`.
     gap : (K, F)
-        Flanks are pressed in by J q - gap, m.
+        A flank is compressed by J q - gap where that is positive, m.
     tolerance
-        Imbalance over the largest force, dimensionless.
+        Imbalance over the largest force at which a search ends, dimensionless.
     start : (n,)
         Where the first search starts, m.
 
     Returns
     -------
     displacements : (K, n)
-        m.
+        Unknowns of `springs`, m.
     forces : (K, F)
-        Of the flanks, N.
+        Forces of the flanks, positive in compression, N.
     residuals : (K,)
-        Largest imbalance over the largest force, above the tolerance where a position is not solved.
+        Largest imbalance over the largest force; above the tolerance where a position is not solved.
+        Nothing is raised.
     """
     count, flanks = gap.shape
     displacements, forces = np.empty((count, start.size)), np.empty((count, flanks))
@@ -150,8 +154,10 @@ class StaticBlocks:
 
 
 def static_blocks(machine: Machine) -> StaticBlocks | None:
-    """Return the compiled problem where bearings join no pinion with anything else, each flank touches one
-    pinion alone, and no degree of freedom that is left out is loaded.
+    """Return the compiled problem of a machine, or None where the compiled solver does not apply.
+
+    It applies where bearings join no pinion with anything else, each flank touches one pinion alone, and
+    no degree of freedom that is left out is loaded.
 
     Parameters
     ----------
@@ -161,7 +167,7 @@ def static_blocks(machine: Machine) -> StaticBlocks | None:
     Returns
     -------
     StaticBlocks or None
-        None where the compiled solver does not apply.
+        The problem with the machine's loads and bearing clearances; flank gaps are given to `settle_all`.
     """
     blocks, loads = _unloaded_blocks(machine.without_errors), machine.linear.loads
     if blocks is None or np.delete(loads, blocks.coordinates).any():
@@ -175,8 +181,8 @@ def static_blocks(machine: Machine) -> StaticBlocks | None:
 
 @lru_cache(maxsize=8)
 def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
-    """Return static_blocks() without clearance and loads; machines with the same bodies, bearings and meshes
-    share it.
+    """Return `static_blocks` with clearances and loads of zero, or None; machines with the same bodies,
+    bearings and meshes share it.
     """
     layout, linear = machine.layout, machine.linear
     stiffness, rows = linear.stiffness, linear.rows
@@ -189,7 +195,11 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
 
 
 def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:
-    """Whether the pinions couple only through the gears and the springs of their own meshes."""
+    """Whether the pinions couple only through the gears, and each flank touches one pinion alone.
+
+    coordinates (n,): degrees of freedom that statics solves for; stiffness (dof, dof) of the bearings;
+    rows (flanks, dof). A spring on a pinion's rotation also gives False.
+    """
     size, pinions = len(stiffness), len(layout.pinions)
     group = np.full(size, -1)
     group[coordinates[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
@@ -203,7 +213,11 @@ def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: A
 
 
 def _springs(layout: Layout, coordinates: Integers, scale: Array, bearing: Array, rows: Array) -> Springs:
-    """Return the compiled problem without clearance and loads."""
+    """Return the compiled problem without clearance and loads.
+
+    coordinates, scale (n,): degree of freedom of each unknown and what 1 m of it is in m or rad; bearing
+    (dof, dof): stiffness, N/m; rows (F, dof): derivative of the flanks' deflections.
+    """
     first, jacobian = 3 * len(layout.pinions), rows[:, coordinates] * scale
     window_starts, columns = _windows(layout, coordinates.size, len(bearing) == layout.dof)
     if np.count_nonzero(np.take_along_axis(jacobian, columns, axis=1)) < np.count_nonzero(jacobian):
@@ -225,7 +239,12 @@ def _springs(layout: Layout, coordinates: Integers, scale: Array, bearing: Array
 
 
 def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Array]:
-    """Return coordinates that statics solves for, and a length scale for each."""
+    """Return the degree of freedom of each unknown (n,), and what 1 m of it is in m or rad (n,).
+
+    Unknowns are x, y, theta of each pinion, then x, y, z, theta and tilts of each gear, then coordinates
+    added to the layout. `every_length` (dof,): length of a unit of each degree of freedom, m. If some
+    gear tilts, the others get tilts of scale 0.
+    """
     coordinates: list[int] = []
     lengths: list[float] = []
     pinions, bodies = len(layout.pinions), len(layout.bodies)
@@ -245,8 +264,10 @@ def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Arr
 
 
 def _windows(layout: Layout, size: int, by_gear: bool) -> tuple[Integers, Integers]:
-    """Return where the unknowns of each flank start, of its pinion and beside the pinions (flanks, 2), and
-    all of its unknowns (flanks, ...): those of its gear, or the whole core.
+    """Return which of `size` unknowns each flank depends on.
+
+    Returns the first unknown of its pinion and the first beside the pinions (flanks, 2), then all of its
+    unknowns (flanks, 3 + w): those of its gear if `by_gear`, else all that do not belong to pinions.
     """
     first = 3 * len(layout.pinions)
     width = (size - first) // len(layout.gears) if by_gear else size - first

@@ -44,37 +44,38 @@ class Contacts:
     upper: Array
 
     def beyond(self, deflections: Array) -> Array:
-        """Return how far deflections of contacts lie beyond the backlash edges, 0 between the edges.
+        """Return the compression of contacts by deflections: above the upper edge, or negative below the
+        lower one.
 
         Parameters
         ----------
         deflections : (..., contacts) array
-            m.
+            m, with the error taken off.
 
         Returns
         -------
         (..., contacts) array
-            m.
+            m; 0 between the edges.
         """
         return beyond_edges(deflections, self.lower, self.upper)
 
     def forces(self, beyond: Array) -> Array:
-        """Return the forces of contacts.
+        """Return the forces of contacts by the law.
 
         Parameters
         ----------
         beyond : (..., contacts) array
-            Compression, m.
+            Compression as `beyond` returns it, m.
 
         Returns
         -------
         (..., contacts) array
-            N.
+            N, with the sign of the compression.
         """
         return self.law.force(NO_PHASE, beyond[..., None, :])[..., 0, :]
 
     def slopes(self, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the compression.
+        """Return the derivatives of the forces by the compression (tangent stiffness).
 
         Parameters
         ----------
@@ -125,14 +126,18 @@ def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -
 
 @dataclass(frozen=True, eq=False)
 class _Rings:
-    """Bearings with clearance: which unknowns are x and y (R, 2), stiffness and clearance (R,)."""
+    """Bearings with clearance: unknowns that are x and y (R, 2), stiffness (R,) in N/m, clearance (R,) in
+    m.
+    """
 
     coordinates: Integers
     stiffness: Array
     clearance: Array
 
     def push(self, q: Array) -> Array:
-        """Return the forces (..., n) of the bearings with clearance at displacements (..., n)."""
+        """Return the forces (..., n) of the shafts on these bearings at displacements q (..., n), N: k (1
+        - c / r) (x, y) where the distance r is above the clearance c, else 0.
+        """
         forces = np.zeros_like(q)
         displacements = q[..., self.coordinates]
         distance = np.maximum(np.hypot(displacements[..., 0], displacements[..., 1]), self.clearance)
@@ -141,7 +146,7 @@ class _Rings:
         return forces
 
     def add_tangents(self, q: Array, matrix: Array) -> None:
-        """Add their derivatives at displacements (n,) to a matrix (n, n)."""
+        """Add the derivatives of `push` at displacements q (n,) to a matrix (n, n), N/m, in place."""
         for at, stiffness, clearance in zip(self.coordinates, self.stiffness, self.clearance, strict=True):
             distance = float(np.hypot(*q[at]))
             if distance > clearance:
@@ -152,7 +157,13 @@ class _Rings:
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """Contacts and bearings in scaled displacements: jacobian (contacts, q), bearing (q, q), rings."""
+    """Contacts, bearings and loads of one position; all unknowns q (n,) are lengths, m.
+
+    - jacobian (contacts, n): derivative of the deflections
+    - bearing (n, n): stiffness without the bearings that have clearance, N/m
+    - loads (n,): N
+    - rings: bearings with clearance
+    """
 
     jacobian: Array
     contacts: Contacts
@@ -161,21 +172,27 @@ class _Springs:
     rings: _Rings
 
     def deflections(self, q: Array) -> Array:
-        """Return the deflection of every contact, m, at displacements `q`."""
+        """Return the deflection (contacts,) of every contact, jacobian q - error, m, at displacements q
+        (n,).
+        """
         return self.jacobian @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
-        """Return the force of every contact, N, at displacements `q`."""
+        """Return the force (contacts,) of every contact, N, positive above its upper edge, at
+        displacements `q` (n,).
+        """
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
-        """Return the forces out of balance at q with these forces of the contacts."""
+        """Return the forces out of balance (n,), N, which are the gradient of the energy, at q (n,) with
+        given contact forces (contacts,): bearing q + jacobian^T forces + rings - loads.
+        """
         balance = self.bearing @ q + self.jacobian.T @ forces - self.loads
         return balance + self.rings.push(q) if self.rings.clearance.size else balance
 
     def curvature(self, q: Array, slope: Array) -> Array:
-        """Return the second derivatives of the energy at displacements q, with given slopes of the contacts'
-        forces.
+        """Return the second derivatives (n, n), N/m, of the energy at displacements q, with given tangent
+        stiffness (contacts,) of the contacts.
         """
         curvature = self.bearing + (self.jacobian.T * slope) @ self.jacobian
         if self.rings.clearance.size:
@@ -183,10 +200,17 @@ class _Springs:
         return curvature
 
     def along(self, q: Array, deflections: Array, step: Array, tie: float, anchor: Array) -> "Line":
-        """Return the energy's slope along a step from q, with a spring `tie` to the anchor."""
+        """Return the energy's slope along the line q + s step, as a function of s.
+
+        deflections (contacts,): those at q, m; tie: stiffness, N/m, of springs from q to the position
+        `anchor` (n,) in every unknown.
+        """
         at_start = self.bearing @ q + tie * (q - anchor) - self.loads
 
         def bearings(s: Array) -> Array:
+            """Return the slope (K,), J, of the energy in the bearings with clearance at points s (K,) of
+            the line.
+            """
             return np.asarray(self.rings.push(q + s[:, None] * step) @ step)
 
         return Line(
@@ -201,8 +225,10 @@ class _Springs:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Slope of the energy along a line: constant + rise s + sum of rates F(deflections + s rates), and what
-    `bearings` with clearance add at points (K,) of the line.
+    """Slope of the energy along a line q + s step: constant + rise s + sum of rates F(deflections + s
+    rates), and what `bearings` with clearance add at points (K,) of the line, in J.
+
+    deflections (contacts,): at s = 0, m; rates (contacts,): their change for a whole step, m.
     """
 
     constant: float
@@ -213,7 +239,9 @@ class Line:
     bearings: Callable[[Array], Array] | None = None
 
     def _forces(self, s: Array | float) -> Array:
-        """Return the forces, N, of the contacts at a step `s` along the line."""
+        """Return the contact forces (..., contacts), N, at points s of the line, a number or (K, 1), in
+        steps.
+        """
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:
@@ -222,12 +250,12 @@ class Line:
         Parameters
         ----------
         s : (K,) array
-            Points, in steps (dimensionless).
+            Points, as multiples of the step (dimensionless).
 
         Returns
         -------
         (K,) array
-            J for a step.
+            Derivative of the energy by s, J.
         """
         forces = self._forces(s[:, None])
         slopes = np.asarray(self.constant + self.rise * s + forces @ self.rates)
@@ -271,8 +299,11 @@ class Line:
         return self._zero(at[after - 1], at[after], slopes[after - 1], slopes[after], close)
 
     def _zero(self, low: float, high: float, below: float, above: float, close: float) -> float:
-        """Return the zero between two corners, by one step where the slope is straight there, else by the
-        Illinois method (Dowell and Jarratt 1971).
+        """Return the zero of the slope between two corners.
+
+        low, high: points that bracket it; below < 0 < above: slopes there, J; close: slope that counts as
+        zero, J. Where the slope is straight one step finds it, else the Illinois method (Dowell and
+        Jarratt 1971).
         """
         side = 0
         for _ in range(MAX_ITERATIONS):
@@ -291,18 +322,18 @@ class Line:
         return s
 
     def _noise(self, s: float) -> float:
-        """Return the rounding error of the slope at a point."""
+        """Return a bound for the rounding error of the slope at a point s, J."""
         forces = self._forces(s)
         size = abs(self.constant) + abs(self.rise * s) + np.abs(forces * self.rates).sum()
         return 100.0 * float(np.finfo(float).eps * size)
 
 
 def _minimise(springs: _Springs) -> Array:
-    """Minimise the energy by the proximal point method (Rockafellar 1976).
+    """Return the displacements (n,), m, of least energy, by the proximal point method (Rockafellar 1976).
 
-    Each round ties the body to its last position by a spring softer than before. The springs make every round
-    strictly convex, so that bodies free inside their backlash have a position too; the force in the springs
-    goes to zero as the rounds settle.
+    Each round ties the body to its last position by a spring softer than before. The springs make every
+    round strictly convex, so that bodies free inside their backlash have a position too; the force in the
+    springs goes to zero as the rounds settle.
     """
     size = np.abs(springs.loads).max()
     stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
@@ -317,7 +348,13 @@ def _minimise(springs: _Springs) -> Array:
 
 
 def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) -> Array:
-    """Move a body on that a force next to nothing has not yet moved through its backlash."""
+    """Move bodies on whose load is so small that no round of `_minimise` took them through their
+    backlash.
+
+    Each round extrapolates the last motion (from `last` to `displacement`, (n,), m) to the least energy
+    along that line, then minimises again with springs of stiffness `tie`, N/m. Ends when all forces
+    balance, or after MORE_ROUNDS.
+    """
     for _ in range(MORE_ROUNDS):
         deflections = springs.deflections(displacement)
         forces = springs.contacts.forces(springs.contacts.beyond(deflections))
@@ -333,10 +370,11 @@ def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) 
 
 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
-    """Minimise the piecewise quadratic energy of one round by Newton's method with an exact line search.
+    """Minimise the energy plus springs `tie` (N/m) to the position `anchor` (n,), by Newton's method with
+    an exact line search from the anchor.
 
-    A whole step between places where the same contacts are pressed ends at the minimum of their quadratic: no
-    line is searched there.
+    Returns the displacements (n,), m. If all forces are straight, a full step after which the same
+    contacts are pressed ends at the exact minimum, so no line is searched there.
     """
     displacement, ties, contacts = anchor, tie * np.eye(len(anchor)), springs.contacts
     widest = np.abs(contacts.upper).max()

@@ -26,7 +26,8 @@ WHOLE = 1e-9
 
 @dataclass(frozen=True)
 class Excitation:
-    """Torque `amplitude` cos(order turns + phase) beside the mean torque of a body.
+    """Torque amplitude * cos(order * turns + phase) beside the mean torque of a body, `turns` its
+    rotation in rad.
 
     Attributes
     ----------
@@ -35,7 +36,7 @@ class Excitation:
     order : float
         Vibrations in one turn of the body, dimensionless.
     teeth : int
-        Of the body.
+        Number of teeth of the body.
     amplitude : float
         N m.
     phase : float
@@ -50,12 +51,16 @@ class Excitation:
 
     @property
     def of_mesh(self) -> float:
-        """Frequency over that of the mesh, dimensionless."""
+        """Frequency over that of the mesh: order / teeth, dimensionless."""
         return self.order / self.teeth
 
     @property
     def mesh_harmonic(self) -> int:
-        """Number of the mesh harmonic with this frequency. Raises InvalidInput where there is none."""
+        """Number k >= 1 of the mesh harmonic with this frequency.
+
+        Raises InvalidInput where `of_mesh` is no whole number, as motion in time repeats with the mesh
+        period.
+        """
         nearest = round(self.of_mesh)
         if nearest < 1 or abs(self.of_mesh - nearest) > WHOLE * nearest:
             multiples = (
@@ -76,12 +81,13 @@ def rigid_rotation(layout: Layout, linear: LinearModel, line: DriveLine | None) 
     linear : LinearModel
         Their coordinates.
     line : DriveLine or None
-        Turning masses behind torsional springs.
+        Turning masses behind torsional springs, which turn with their body.
 
     Returns
     -------
     (n,) array
-        1 for each pinion and the teeth's ratio for each gear, dimensionless.
+        Displacement of every coordinate for a pinion rotation of 1: 1 for each pinion, pinion teeth /
+        gear teeth for each gear, 0 for all other coordinates; dimensionless.
     """
     pinions = len(layout.pinions)
     ratio = layout.pinion_teeth / layout.gear_teeth
@@ -94,16 +100,18 @@ def rigid_rotation(layout: Layout, linear: LinearModel, line: DriveLine | None) 
 
 
 def without_rigid_rotation(force: Array, linear: LinearModel, rotation: Array) -> Array:
-    """Take off a force what turns all bodies together, which strains nothing.
+    """Take off a force the part that accelerates all bodies together, which strains nothing.
+
+    It is f - M r (r . f) / (r . M r) with r the rigid rotation.
 
     Parameters
     ----------
     force : (n,) array
-        N and N m.
+        Generalised force f, N and N m.
     linear : LinearModel
-        Coordinates and masses.
+        Coordinates and masses M.
     rotation : (n,) array
-        `rigid_rotation`, dimensionless.
+        `rigid_rotation` r, dimensionless.
 
     Returns
     -------
@@ -136,9 +144,10 @@ class MeshFriction:
     ratios: Array
 
     def loss(self, phases: Array, cycles: Array, forces: Array) -> Array:
-        """Return the force that friction takes along the base circles: loss over their speed.
+        """Return the force that friction takes along the base circles: power lost over their speed.
 
-        The machine turns evenly.
+        It is minus the sum of both lever ratios times the elastic force of the flank. The machine turns
+        evenly.
 
         Parameters
         ----------
@@ -147,12 +156,12 @@ class MeshFriction:
         cycles : (K,) array
             Positions, mesh periods.
         forces : (K, meshes) array
-            Elastic forces, those of the drive flank positive, N.
+            Elastic forces, those of the drive flank positive and those of the back flank negative, N.
 
         Returns
         -------
         (K, meshes) array
-            N.
+            N; positive where power is lost.
         """
         levers = -flank_ratios(self.ratios, phases)[:, 3:].sum(axis=1)
         drive, back = np.split(stacked_values(levers, cycles), 2, axis=1)
@@ -160,21 +169,23 @@ class MeshFriction:
 
 
 def friction_rows(layout: Layout, at_output: bool = True) -> Array:
-    """Return the directions in which the PARTS act on the bodies, equal for both flanks.
+    """Return the generalised forces of the PARTS of friction, equal for both flanks.
 
-    A pinion without a bearing along its axis stays where it is.
+    Friction of a flank is the sum over PARTS of ratio * elastic force * row. A pinion without a bearing
+    along its axis gets no axial force.
 
     Parameters
     ----------
     layout : Layout
         Bodies and mesh geometry.
     at_output : bool
-        Whether a moment on the output meets each moment, so that none turns the machine as a whole.
+        Whether a moment on the output gear balances each moment, so that none turns the machine as a
+        whole.
 
     Returns
     -------
     (meshes, PARTS, dof) array
-        N/N, and m for moments.
+        Force on each degree of freedom for 1 N of each part, N/N, and m for moments.
     """
     rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
     tilt_coordinates = layout.first_tilts

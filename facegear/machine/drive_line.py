@@ -27,6 +27,8 @@ class Seat:
 
     Attributes
     ----------
+    shaft : CondensedShaft
+        Compliance of the shaft on its bearings, condensed to the pinion's middle.
     tilt_inertia : float or None
         Moment of inertia about a diameter, kg m2; None for a pinion that does not tilt.
     """
@@ -36,15 +38,19 @@ class Seat:
 
     @property
     def couples_axially(self) -> bool:
-        """Whether the bearings move a pinion along its axis where it is loaded across."""
+        """Whether the bearings couple z with x, y or tilts: a load across the axis moves the pinion along
+        it.
+        """
         axial_row = np.delete(self.shaft.compliance[2], 2)
         return bool((axial_row != 0.0).any())
 
 
 @dataclass(frozen=True)
 class TurningMass:
-    """A turning mass behind a torsional spring: N m/rad, kg m2, and the damping ratio of the two masses that
-    the spring joins, by themselves.
+    """A turning mass behind a torsional spring, towards the body or the mass before it.
+
+    stiffness of the spring, N m/rad; inertia, kg m2; damping_ratio of the two masses that the spring
+    joins, free of all others.
     """
 
     name: str
@@ -55,7 +61,11 @@ class TurningMass:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A torsional spring between two coordinates of the model: N m/rad, N m s/rad."""
+    """A torsional spring between two coordinates of the model.
+
+    first, second: indices of the coordinates, from the body outwards; stiffness, N m/rad; damping, N m
+    s/rad.
+    """
 
     first: int
     second: int
@@ -65,7 +75,14 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class DriveLine:
-    """Seats by the pinions' numbers in the layout, chains of turning masses by those of the bodies."""
+    """Shafts below pinions and chains of turning masses; called with a linear model it adds their
+    coordinates.
+
+    - seats: shaft of a pinion, by the pinion's number in the layout
+    - masses: turning masses from a body outwards, by the body's number in the layout
+
+    Its coordinates are tilt_x and tilt_y of each tilting pinion, then the rotation of each turning mass.
+    """
 
     layout: Layout
     seats: Mapping[int, Seat]
@@ -73,12 +90,14 @@ class DriveLine:
 
     @property
     def tilting(self) -> tuple[int, ...]:
-        """Indices of the pinions that tilt."""
+        """Numbers in the layout, rising, of the pinions that tilt: those whose seat has a tilt inertia."""
         return tuple(i for i, seat in sorted(self.seats.items()) if seat.tilt_inertia is not None)
 
     @property
     def size(self) -> int:
-        """Number of coordinates that the drive line adds."""
+        """Number of coordinates that the drive line adds: two for each tilting pinion, one for each
+        turning mass.
+        """
         return 2 * len(self.tilting) + sum(len(chain) for chain in self.masses.values())
 
     def tilts(self, pinion: int) -> Integers:
@@ -113,12 +132,13 @@ class DriveLine:
         return np.append(straight, self.tilts(pinion)) if pinion in self.tilting else straight
 
     def chains(self) -> Iterator[tuple[int, int, tuple[TurningMass, ...]]]:
-        """Yield every chain of turning masses.
+        """Yield every chain of turning masses, by rising number of its body.
 
         Yields
         ------
         tuple of int, int and tuple of TurningMass
-            Number of the body, first coordinate and masses.
+            Number of the body in the layout, index of the first mass's coordinate in the model, and the
+            masses from the body outwards.
         """
         first = self.layout.dof + 2 * len(self.tilting)
         for body, chain in sorted(self.masses.items()):
@@ -139,7 +159,10 @@ class DriveLine:
         return at
 
     def springs(self) -> list[Spring]:
-        """Return all torsional springs, from each body outwards.
+        """Return all torsional springs, chain by chain, from each body outwards.
+
+        The damping is 2 zeta sqrt(k J), with J = J1 J2 / (J1 + J2) of the two inertias that the spring
+        joins.
 
         Returns
         -------
@@ -157,9 +180,11 @@ class DriveLine:
         return springs
 
     def __call__(self, model: LinearModel) -> LinearModel:
-        """Return the model with these coordinates behind its own.
+        """Return the model with the drive line's coordinates behind its own.
 
-        The lumped damping acts on shafts and their bearings, and on no turning mass.
+        Torques move to the last mass of a chain. The stiffness of its shaft replaces the bearing of a
+        pinion that tilts, or whose bearings couple axial motion with others. The lumped damping acts on
+        shafts and their bearings, and on no turning mass.
         """
         added_count = self.size
         inertias = self._inertias()
@@ -190,26 +215,33 @@ class DriveLine:
         )
 
     def _inertias(self) -> Array:
-        """Return the inertias of tilts and turning masses, kg m^2."""
+        """Return the inertias of the added coordinates (size,): tilts, then turning masses, kg m^2."""
         tilts = [self.seats[i].tilt_inertia for i in self.tilting for _ in range(2)]
         return np.array([*tilts, *(mass.inertia for *_, chain in self.chains() for mass in chain)], float)
 
     def _labels(self) -> list[str]:
-        """Return the names of the coordinates of tilts and turning masses."""
+        """Return the labels `body:letter` of the added coordinates: tilts, then turning masses by their
+        names.
+        """
         names = self.layout.body_names
         tilts = [f"{names[i]}:{letter}" for i in self.tilting for letter in TILT_LETTERS]
         return tilts + [f"{names[body]}:{mass.name}" for body, _, chain in self.chains() for mass in chain]
 
     def _lengths(self) -> Array:
-        """Return the radius, m, by which each angle counts as a displacement."""
+        """Return the length of 1 rad of each added coordinate (size,), m: the layout's radius of the
+        body.
+        """
         layout = self.layout
         radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
         tilts = [layout.pinion_radius] * (2 * len(self.tilting))
         return np.array(tilts + [radii[body] for body, _, chain in self.chains() for _ in chain])
 
     def _torsion_matrices(self, model: LinearModel) -> tuple[Array, Array]:
-        """Return the stiffness of the torsional springs, and dampers that take the lumped damping away from
-        them.
+        """Return stiffness and dampers of the torsional springs, (n + size, n + size), N m/rad and N m
+        s/rad.
+
+        The dampers are the springs' own less the lumped damping that the model's factors of M and K would
+        add to springs and turning masses, so that these have their own damping alone.
         """
         whole = model.size + self.size
         stiffness, dampers = np.zeros((2, whole, whole))
@@ -222,12 +254,16 @@ class DriveLine:
         return stiffness, dampers
 
     def _inertia(self, coordinate: int) -> float:
-        """Return the inertia of a coordinate by its number in the whole machine, kg m^2."""
+        """Return the inertia of an added coordinate by its index among all coordinates of the machine, kg
+        m^2.
+        """
         return float(self._inertias()[coordinate - self.layout.dof])
 
     def _spin(self, model: LinearModel) -> Spin | None:
-        """Return the gyroscopic terms. Pinions turn against their z, which points away from the gears'
-        axis.
+        """Return the gyroscopic matrix of the tilting pinions, for 1 rad/s of the pinions; None if none
+        tilts.
+
+        Pinions turn against their z, which points away from the gears' axis.
         """
         if not self.tilting:
             return None

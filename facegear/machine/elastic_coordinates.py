@@ -34,7 +34,7 @@ class Coordinates:
     rows : (2 meshes of the gear, k)
         Derivative of the deflections of its flanks, drive flanks first.
     slopes : (2, meshes of the gear, k)
-        Of the rim below each, as `LinearModel.slopes`.
+        Slopes of the rim below each mesh by the coordinates, as `LinearModel.slopes`.
     lengths : (k,)
         Motion of the pitch point by a unit of each, m.
     """
@@ -53,7 +53,10 @@ class Coordinates:
 
 
 def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
-    """Return the elastic coordinates of a gear with meshes at given angles.
+    """Return the elastic coordinates of a gear with meshes at given angles, from its modes.
+
+    Matrices of rotation are those for a speed of the body of 1 rad/s, in the frame that stands still in
+    space.
 
     Parameters
     ----------
@@ -99,7 +102,11 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
 
 
 def _number_coordinates(body: ReducedBody) -> tuple[Integers, Integers, tuple[str, ...]]:
-    """Return mode and part (0 cosine, 1 sine) of every coordinate, and their letters."""
+    """Return mode (k,), part (k,) and letters of every coordinate of a gear.
+
+    mode: index of the mode of `body`; part: 0 cosine, 1 sine; letters as in `Coordinates`. A mode of
+    order 0 has one coordinate, any other a cosine and a sine.
+    """
     mode, part, letters = [], [], []
     for number, order in enumerate(body.order.tolist()):
         rank = number - int(np.searchsorted(body.order, order)) + 1
@@ -111,7 +118,12 @@ def _number_coordinates(body: ReducedBody) -> tuple[Integers, Integers, tuple[st
 
 
 def _order_zero(body: ReducedBody, mode: Integers) -> Array:
-    """Coriolis terms between modes along the axis and round it: -2 g on the first, 2 g on the second."""
+    """Return Coriolis terms (k, k) between coordinates of order 0 along the axis and round it, for 1
+    rad/s.
+
+    A motion along the axis has -2 g by the velocity round it, a motion round it 2 g by the velocity along
+    it. mode (k,): mode of each coordinate.
+    """
     order, turning = body.order[mode], body.round[mode] > 0.5
     are_order_zero = (order[:, None] == 0) & (order == 0)
     sign = np.where(turning, 1.0, -1.0)[:, None] * (turning[:, None] != turning)
@@ -119,10 +131,13 @@ def _order_zero(body: ReducedBody, mode: Integers) -> Array:
 
 
 def _hub_masses(hub: Array, order: Integers, cosine: Mask, turning: Array, sign: float) -> Array:
-    """Return the masses between the hub's motions and the modes, (6, k).
+    """Return the masses (6, k) between the hub's x, y, z, theta, tilt_x, tilt_y and the modes'
+    coordinates.
 
-    Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub. Tilts raise the
-    teeth of the upper gear as those of a wave do, and lower those of the lower gear.
+    hub (2, k): Q of `ReducedBody.hub` for each coordinate; order (k,); cosine (k,): which are cosines;
+    turning (k,): 1 for order 0 round the axis; sign: 1 upper, -1 lower gear. Heights count towards the
+    teeth, against z of the upper gear; X = -y and Y = x of the hub. Tilts raise the teeth of the upper
+    gear as those of a wave do, and lower those of the lower gear.
     """
     masses = np.zeros((6, order.size))
     zero, single = order == 0, order == 1
@@ -136,7 +151,12 @@ def _hub_masses(hub: Array, order: Integers, cosine: Mask, turning: Array, sign:
 
 
 def _hub_coriolis(body: ReducedBody, mode: Integers, cosine: Mask, sign: float) -> Array:
-    """2 (n M + g) between hub and modes. For a tilt that is 2 int rho r W, about whatever point it turns."""
+    """Return velocity terms (6, k), 2 (n M + g), on the hub's coordinates by those of the modes, for 1
+    rad/s.
+
+    For a tilt that is 2 int rho r W, about whatever point it turns. mode (k,), cosine (k,), sign: as in
+    `_hub_masses`.
+    """
     terms, order = np.zeros((6, mode.size)), body.order[mode]
     terms[THETA] = np.where(order == 0, 2.0 * sign * (body.hub_spin * (1.0 - body.round))[mode], 0.0)
     tilt = np.where(order == 1, 2.0 * sign * (body.hub[1] + body.hub_spin)[mode], 0.0)
@@ -194,7 +214,10 @@ def flank_rows(
 
 
 def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles: Array) -> Array:
-    """Return the heights at some angles by coordinates whose waves have given amplitudes.
+    """Return the axial motion of the rim at some angles for a unit of each coordinate.
+
+    Order n has axial * cos(n angle) or axial * sin(n angle); order 0 has `axial`, or 0 where it goes
+    round the axis.
 
     Parameters
     ----------

@@ -81,9 +81,10 @@ class ElasticGears:
         return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with the coordinates of every gear behind its own.
+        """Return the model with the elastic coordinates of every gear behind its own, then the attached
+        ones.
 
-        The lumped damping stays on the coordinates that it is given for.
+        The lumped damping stays on the coordinates that it is given for; elastic ones have their own.
         """
         model = base_model
         for gear, body in self.bodies.items():
@@ -94,9 +95,11 @@ class ElasticGears:
         return model
 
     def _with_attached(self, model: LinearModel, mesh: int, between: float) -> LinearModel:
-        """Return the model with a coordinate of unit mass that couples the two flanks of a mesh.
+        """Return the model with a coordinate that couples the two flanks of a mesh.
 
-        `between` is the motion of either flank by a unit force on the other, m/N.
+        between: motion of either flank by a unit force on the other that the modes leave out, m/N. The
+        coordinate has unit mass and ATTACHED_FREQUENCY times the frequency of the gear's fastest mode;
+        its flank rows are scaled such that its compliance between the flanks is `between`.
         """
         layout, gear = self.layout, self.layout.meshes[mesh][1]
         modes = coordinates(self.bodies[gear], layout.gears[gear].sign, layout.angles, layout.pressure_angle)
@@ -126,7 +129,12 @@ class ElasticGears:
         )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
-        """Add the elastic coordinates of one face gear to the linear model."""
+        """Return the model with the elastic coordinates of one face gear behind its own.
+
+        gear: number of the gear. Mass, stiffness, flank rows, slopes and gyroscopic terms get blocks for
+        them, coupled with the coordinates of the gear's hub; the gear's rigid mass stays on the hub's
+        coordinates.
+        """
         layout, face_gear = self.layout, self.layout.gears[gear]
         elastic = coordinates(body, face_gear.sign, layout.angles, layout.pressure_angle)
         old, new = model.size, len(elastic.letters)
@@ -168,11 +176,11 @@ class ElasticGears:
 def _hub_terms(
     layout: Layout, gear: int, body: ReducedBody, elastic: Coordinates
 ) -> tuple[Integers, Array, Array]:
-    """Return coordinates (h,) of a gear's hub, and masses and velocity terms (h, k) that couple it to its
-    body.
+    """Return indices (h,) of the coordinates of a gear's hub, and masses and velocity terms (h, k) that
+    couple these to the k elastic coordinates; h is 4, or 6 for a gear that tilts.
 
-    A tilt about a height h is a tilt about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h,
-    r).
+    A tilt about a height h is a tilt about height 0 and a motion sideways: it moves (-(zeta - h), zeta -
+    h, r).
     """
     hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
     if layout.gears[gear].body.tilt is None:
@@ -185,7 +193,10 @@ def _hub_terms(
 
 
 def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple[Array, Array]:
-    """Masses between motion sideways and tilt of a hub, and its gyroscopic moments; each (size, size)."""
+    """Return masses between motion sideways and tilt of a gear's hub, kg m, and its gyroscopic moments
+    for 1 rad/s of the gear, kg m2; each (size, size) over the coordinates of the model, zero for a gear
+    that does not tilt.
+    """
     masses, moments = np.zeros((2, size, size))
     face_gear = layout.gears[gear]
     if face_gear.body.tilt is not None:
@@ -199,7 +210,7 @@ def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple
 
 
 def _centre(layout: Layout, gear: int, body: ReducedBody) -> float:
-    """Return the height (m), in the section, of the point about which a hub tilts."""
+    """Return the height (m), in the body's section, of the point about which a gear's hub tilts."""
     tilt = layout.gears[gear].body.tilt
     return float(body.pitch_height) - (0.0 if tilt is None else tilt.below)
 

@@ -13,12 +13,17 @@ from facegear.machine.machine import Machine
 
 
 def _lags(phases: Array) -> tuple[float, ...]:
-    """Return the lag of every mesh in the mesh cycle from its phase, both in mesh periods."""
+    """Return phases (meshes,) as plain numbers within [0, 1), mesh periods, rounded to 12 digits so that
+    equal lags compare as equal.
+    """
     return tuple((np.round(phases, 12) % 1.0).tolist())
 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:
     """Return e(t) of every flank over the reference's mesh cycle, without constant and slow errors.
+
+    A mesh has its own series from `imperfections.series` if there is one, else `machine.error`, shifted
+    by its error phase; a back flank has the mirrored series f(-t).
 
     Parameters
     ----------
@@ -28,14 +33,14 @@ def error_series(machine: Machine) -> tuple[Harmonics, ...]:
     Returns
     -------
     tuple of Harmonics
-        One series for each flank, in m; drive flanks first.
+        One series for each flank, in m; drive flanks first. Positive keeps the flank from touching.
     """
     return _error_series(machine.without_errors)
 
 
 @lru_cache(maxsize=16)
 def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
-    """Return the Fourier series of the error of every flank; shared by equal machines."""
+    """Return `error_series` of a machine without constant errors; cached by the machine's identity."""
     mesh_series = machine.imperfections.series
     shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
     return _flank_series(tuple(shapes), machine.error_phases)
@@ -106,9 +111,10 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
 
 
 def _early_teeth(machine: Machine, cycles: Array) -> Array:
-    """Return by how much every flank comes early (K, 2 meshes), m, as single teeth of its gears deviate.
+    """Return by how much every flank closes early (K, 2 meshes), m, as single teeth of its gears deviate.
 
-    Both teeth are at the place of the mesh cycle at which the mesh is.
+    cycles (K,): mesh periods of the reference. Both teeth of a pair are taken at the place of the mesh
+    cycle at which the mesh is; zeros without errors of single teeth.
     """
     teeth, layout = machine.imperfections.teeth, machine.layout
     early = np.zeros((2, cycles.size, len(layout.meshes)))
@@ -124,15 +130,15 @@ def _early_teeth(machine: Machine, cycles: Array) -> Array:
 
 
 def _beside(values: Array) -> Array:
-    """Concatenate the values of drive and back flanks (2, K, meshes) to (K, 2 meshes)."""
+    """Return values (2, K, meshes) of drive and back flanks as (K, 2 meshes), drive flanks first."""
     return np.concatenate([values[0], values[1]], axis=-1)
 
 
 def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
-    """Return the teeth of the pinion and of the face gear that a mesh has come to, counted on from turn to
-    turn.
+    """Return the teeth of the pinion and of the face gear that a mesh has come to.
 
-    At the start the first tooth of each gear is at the first pinion. A fraction lies between two teeth.
+    They are counted on from turn to turn, so that they may exceed the number of teeth or be negative. At
+    the start the first tooth of each gear is at the first pinion. A fraction lies between two teeth.
 
     Parameters
     ----------
@@ -171,19 +177,28 @@ def mirror_series(series: Harmonics) -> Harmonics:
 
 @kept_by_content(8)
 def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
-    """Return the series of drive flanks and of their mirror images, each with the lag of its mesh."""
+    """Return the series of all drive flanks, then of all back flanks, each shifted by the lag of its
+    mesh.
+
+    drive: series of each mesh without lag, of which back flanks have the mirror image f(-t); phases
+    (meshes,), mesh periods.
+    """
     flanks = [*drive, *(mirror_series(series) for series in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
     return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
 
 
 def _flanks(tangential: Array, separating_error: Array) -> Array:
-    """Return errors of drive and back flanks side by side, m."""
+    """Return errors (..., 2 meshes) of drive flanks, separating + tangential, then of back flanks,
+    separating - tangential; both arguments (..., meshes), m.
+    """
     return np.concatenate([separating_error + tangential, separating_error - tangential], axis=-1)
 
 
 def _deviation(curve: Array | None, tooth_positions: Array) -> Array:
-    """Pitch deviation between the teeth, linear from tooth to tooth, (K,)."""
+    """Return pitch deviations (K,), m, at positions (K,) counted in teeth: linear between the teeth of a
+    periodic curve (teeth,), 0 without one.
+    """
     if curve is None:
         return np.zeros(tooth_positions.size)
     return np.interp(tooth_positions, np.arange(curve.size), curve, period=curve.size)

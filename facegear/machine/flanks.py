@@ -27,12 +27,13 @@ NO_LOAD = 1e-9
 
 
 def significant_forces(forces: Array) -> Array:
-    """Return the forces with 0 in place of those that are rounding beside the largest.
+    """Return forces with 0 in place of those of at most NO_LOAD (1e-9) times the largest size of all
+    entries.
 
     Parameters
     ----------
     forces : array of any shape (...)
-        Forces of meshes or flanks, N.
+        Forces of meshes or flanks, of either sign, N.
 
     Returns
     -------
@@ -44,7 +45,7 @@ def significant_forces(forces: Array) -> Array:
 
 
 def flank_edges(machine: Machine) -> Array:
-    """Return the deflection at which each flank touches: half the backlash, and its constant error.
+    """Return the deflection at which each flank touches: half the backlash plus its constant error.
 
     Parameters
     ----------
@@ -54,17 +55,20 @@ def flank_edges(machine: Machine) -> Array:
     Returns
     -------
     (2 meshes,) array
-        m, drive flanks first.
+        Value of rows q, m, above which the flank is compressed, without e(t); drive flanks first.
     """
     return np.tile(machine.half_backlash, 2) + constant_errors(machine)
 
 
 @dataclass(frozen=True, eq=False)
 class MeshContacts:
-    """The contacts of all meshes, see Layout.contacts.
+    """The contacts of all meshes, ordered as `Layout.contacts` says.
 
-    law; error: e(t) of each over the mesh cycle, m; lower, upper (contacts,): edges of the deflection, m,
-    where a flank that only pushes has no lower one; damping (contacts,), N s/m.
+    - law: force (N) by mesh position and compression (m)
+    - error: series e(t) of each contact over the mesh cycle, m, with its lag; deflection = rows q - e
+    - lower, upper (contacts,): edges of the dead zone of the deflection, m; a flank that only pushes has
+      lower = -inf, and is compressed by deflection - upper
+    - damping (contacts,): N s/m
     """
 
     law: MeshLaw
@@ -92,7 +96,11 @@ def mesh_contacts(machine: Machine) -> MeshContacts:
 
 
 def _flank_contacts(machine: Machine) -> MeshContacts:
-    """Return the contacts of all flanks; errors that never change stand in their edges."""
+    """Return one contact for each flank, drive flanks first.
+
+    Constant errors are part of its upper edge; its error is e(t) alone; the damping is that of closed
+    flanks.
+    """
     upper = flank_edges(machine)
     damping = flank_dampers(machine.damping, np.ones(upper.size, dtype=bool))
     never = np.full(upper.size, -np.inf)
@@ -123,7 +131,10 @@ def flank_dampers(damping: Damping, contact_mask: Mask) -> Array:
 
 
 def _line_contacts(machine: Machine) -> MeshContacts:
-    """Return the contacts of meshes whose two flanks share one line of action."""
+    """Return one contact for each mesh of printed kinematics: both flanks share one line of action, with
+    a dead zone from minus to plus half the backlash, the whole mesh damping, and the error with the
+    mesh's lag.
+    """
     phases = np.round(machine.error_phases, 12) % 1.0
     half = machine.half_backlash
     return MeshContacts(
@@ -136,8 +147,10 @@ def _line_contacts(machine: Machine) -> MeshContacts:
 
 
 def flank_law(machine: Machine) -> MeshLaw:
-    """Return the law of all drive flanks, then all back flanks: the machine's own, or else its mesh
-    stiffness.
+    """Return the force law of all drive flanks, then all back flanks, each with the lag of its mesh.
+
+    `machine.law` wins where it is given; else the law is made from `machine.tables`; else it is linear
+    with `machine.mesh_stiffness`. A back flank has the mirrored series.
 
     Parameters
     ----------
@@ -147,14 +160,15 @@ def flank_law(machine: Machine) -> MeshLaw:
     Returns
     -------
     MeshLaw
-        Force (N) of each flank by mesh position and compression (m).
+        Force (N) of each flank by mesh position and compression (m); shared by machines that differ in
+        backlash and constant errors alone.
     """
     return _flank_law(machine.without_errors)
 
 
 @lru_cache(maxsize=16)
 def _flank_law(machine: Machine) -> MeshLaw:
-    """Return the force law of all flanks of a machine; shared by equal machines."""
+    """Return the force law of all flanks of a machine without errors; cached by the machine's identity."""
     if machine.law is not None:
         return machine.law
     if machine.tables is None:
@@ -164,7 +178,9 @@ def _flank_law(machine: Machine) -> MeshLaw:
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
-    """Return how often the flanks are compressed beyond the last level of their law.
+    """Return the fraction of positions at which each flank's force is above that of its law's last level.
+
+    There the law is extrapolated.
 
     Parameters
     ----------
@@ -173,12 +189,12 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
     cycles : (K,) array
         Mesh cycles from the start, periods.
     flank_forces : (K, 2 meshes) array
-        Forces of the flanks at these positions, N.
+        Forces of the flanks at these positions, N, drive flanks first.
 
     Returns
     -------
     (2 meshes,) array
-        Fraction of the positions; 0 for a law that is straight.
+        Fraction of the K positions; 0 for a law that is linear in the compression.
     """
     law = flank_law(machine)
     if law.straight:
@@ -191,7 +207,10 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 
 @kept_by_content(4)
 def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
-    """Return the linear law of flanks with a stiffness series and a phase for each mesh."""
+    """Return the linear law of all drive flanks, then all back flanks.
+
+    stiffness: series of each mesh over the reference's cycle, N/m; phases (meshes,): lags, mesh periods.
+    """
     return linear_law(_flank_series(stiffness, phases))
 
 
@@ -203,10 +222,12 @@ def _law_of_tables(
     softening: Array | None,
     lags: tuple[float, ...],
 ) -> LoadDependentLaw:
-    """Return the law of all flanks from their tables with softening, each with the lag of its mesh.
+    """Return the load-dependent law of all drive flanks, then all back flanks, each with the lag of its
+    mesh.
 
-    gears (meshes,): number of each mesh's gear; factors (meshes,) on the forces; softening (meshes,), m/N;
-    lags of the meshes, mesh periods.
+    tables: one `FlankTables` for each gear; gears (meshes,): number of each mesh's gear; factors
+    (meshes,) on the forces; softening (meshes,): compliance in series with both flanks, m/N, or None;
+    lags (meshes,), mesh periods.
     """
     mirrored_backs = [gear_tables.back.mirror() for gear_tables in tables]
     drives, backs = [tables[g].drive for g in gears], [mirrored_backs[g] for g in gears]
@@ -244,20 +265,23 @@ def line_law(machine: Machine) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
-    """Return the linear law of flanks that lag behind each other, of one stiffness."""
+    """Return the linear law of meshes with one common stiffness series (N/m), each shifted by its lag
+    (mesh periods).
+    """
     return linear_law([stiffness.shift(lag) for lag in lags])
 
 
 @kept_by_content(4)
 def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) -> MeshLaw:
-    """Return the load-dependent law of flanks that lag behind each other, from tables."""
+    """Return the load-dependent law of meshes from one drive-flank table for each, shifted by its lag
+    (mesh periods).
+    """
     return load_dependent_law(shift_tables(drive, lags))
 
 
 def flank_places(phases: Array, cycles: Array) -> Array:
-    """Return the position of every flank in the reference's mesh cycle.
-
-    A back flank goes through the reference's cycle the other way round.
+    """Return the position of every flank in the reference's mesh cycle: cycles - phase, its negative for
+    a back flank, which goes through the reference's cycle the other way round.
 
     Parameters
     ----------

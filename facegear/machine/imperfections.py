@@ -22,7 +22,7 @@ class ToothErrors:
 
     @property
     def turning(self) -> tuple[bool, bool]:
-        """Whether teeth of the pinions and of the gears differ."""
+        """Whether any tooth errors are not zero: of the pinions, and of the face gears."""
         pinion, gear = (any(curve.any() for curve in curves) for curves in (self.pinion, self.gear))
         return pinion, gear
 
@@ -53,7 +53,9 @@ class ToothErrors:
 
 
 def _at(curve: Array, teeth: int, tooth_positions: Array) -> Array:
-    """Return a curve over the teeth of a gear, m, at positions counted in teeth."""
+    """Return a curve over one turn of a gear (samples,), m, linear between samples, at positions (K,)
+    counted in teeth; the samples lie evenly over `teeth` teeth, periodically.
+    """
     return np.interp(tooth_positions, np.arange(curve.size) * (teeth / curve.size), curve, period=teeth)
 
 
@@ -63,7 +65,8 @@ def from_arrays(arrays: Arrays) -> ToothErrors:
     Parameters
     ----------
     arrays : Arrays
-        Arrays `curves` of that stage, by name.
+        Curves over one turn, (teeth times positions,) in m, named pinion_drive_m, pinion_back_m,
+        face_gear_drive_m and face_gear_back_m.
 
     Returns
     -------
@@ -97,7 +100,7 @@ class Imperfections:
     stiffness : (meshes,)
         Factor on k(t).
     teeth
-        What single teeth add, alike on all pinions and on both gears.
+        Errors of single teeth, the same on all pinions and on both gears.
     series
         e(t) of a mesh by its index, in place of the common one.
     position : (pinions, 2)
@@ -127,7 +130,9 @@ class Imperfections:
 
     @property
     def any_slow(self) -> bool:
-        """Whether an error changes from one mesh cycle to the next."""
+        """Whether an error changes from one mesh cycle to the next: runout, pitch deviations or errors of
+        single teeth.
+        """
         turning = (*self.pinion_runout, *self.gear_runout)
         teeth = self.teeth is not None and any(self.teeth.turning)
         pitch = bool(self.pinion_pitch or self.gear_pitch)
@@ -135,7 +140,9 @@ class Imperfections:
 
     @property
     def without_slow_errors(self) -> "Imperfections":
-        """Imperfections without what changes from one mesh cycle to the next, as steady motions see them."""
+        """Imperfections without runouts, pitch deviations and errors of single teeth, as periodic motions
+        need them.
+        """
         pinions, gears = len(self.pinion_runout), len(self.gear_runout)
         return replace(
             self,

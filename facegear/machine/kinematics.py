@@ -71,7 +71,9 @@ class PrintedKinematics:
         return layout.gear_radius
 
     def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
-        """Return the radius at which forces act along the base radius.
+        """Return the radius that a layout gives to a face gear: base radius / cos(pressure angle).
+
+        With it `arm` is the base radius again.
 
         Parameters
         ----------
@@ -88,9 +90,12 @@ class PrintedKinematics:
         return float(base_radius / np.cos(pressure_angle))
 
     def flank_rows(self, layout: Layout) -> Array:
-        """Return the derivative of the flanks' deflections by the DOF.
+        """Return the derivative of the flanks' deflections by the degrees of freedom, as equation (13) is
+        printed.
 
-        Drive flanks are as equation (13) has them; back flanks are their negative.
+        With pressure angle a and distribution angle p of the pinion, a drive flank has cos a, sin a, 0,
+        r_p cos a by the pinion's x, y, z, theta, and -cos p cos a, -sin p cos a, -+sin a, -r_g cos a by
+        the gear's (upper sign for the upper gear). A back flank has the negative of all.
 
         Parameters
         ----------
@@ -100,7 +105,8 @@ class PrintedKinematics:
         Returns
         -------
         (2 meshes, dof) array
-            Drive flanks first; m/m, and m/rad for rotations.
+            Drive flanks first; m/m, and m/rad for rotations. Positive motion along a row compresses the
+            flank.
         """
         cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
         angles = layout.angles
@@ -127,14 +133,16 @@ SAME_ARM = 1e-9
 
 @dataclass(frozen=True)
 class Teeth:
-    """Forces act along the normals of the flanks: `pinion_radius` and `gear_radius` are base radii."""
+    """Kinematics `geometric`: forces act along the normals of the flanks, each flank is a contact of its
+    own, and `pinion_radius` and `gear_radius` of the layout are base radii.
+    """
 
     name: str = "geometric"
     flanks_apart: bool = True
     follows_rotation: bool = True
 
     def require(self, layout: Layout) -> None:
-        """Raise InvalidInput unless the radii are those of the tooth numbers.
+        """Raise InvalidInput unless gear radius / pinion radius = gear teeth / pinion teeth, to 1e-9.
 
         Parameters
         ----------
@@ -164,7 +172,10 @@ class Teeth:
         return radius
 
     def mesh_radius(self, layout: Layout) -> float:
-        """Return the distance of the meshes from the face gears' axis, m N2 / 2.
+        """Return the distance of the meshes from the face gears' axis: gear base radius / cos(pressure
+        angle).
+
+        It equals the tooth module times the gear's tooth number over 2.
 
         Parameters
         ----------
@@ -196,9 +207,10 @@ class Teeth:
         return base_radius
 
     def flank_rows(self, layout: Layout) -> Array:
-        """Return the derivative of the flanks' deflections by the DOF.
+        """Return the derivative of the flanks' deflections by the degrees of freedom, from `mesh_parts`.
 
-        The back flank's normal has the same separating part and the opposite tangential part.
+        A drive flank has the separating plus the tangential part, a back flank the separating less the
+        tangential part.
 
         Parameters
         ----------
@@ -208,7 +220,8 @@ class Teeth:
         Returns
         -------
         (2 meshes, dof) array
-            Drive flanks first; m/m, and m/rad for rotations.
+            Drive flanks first; m/m, and m/rad for rotations. Positive motion along a row compresses the
+            flank.
         """
         tangential, separating_part = mesh_parts(layout)
         return np.concatenate([separating_part + tangential, separating_part - tangential])
@@ -219,10 +232,12 @@ GEOMETRIC = Teeth()
 
 
 def mesh_parts(layout: Layout) -> tuple[Array, Array]:
-    """Return tangential and separating motion at the flanks by the DOF, from the geometry.
+    """Return the tangential and the separating part of the flanks' deflections by the degrees of freedom.
 
-    A pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion axis, so its x and y
-    change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+    Both are along the flank normal: the tangential part holds cos(pressure angle), the separating part
+    sin(pressure angle). A pinion's x is tangential to the face gear and its y along the gear's axis. A
+    pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion axis, so its x and
+    y change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
 
     Parameters
     ----------
@@ -232,7 +247,8 @@ def mesh_parts(layout: Layout) -> tuple[Array, Array]:
     Returns
     -------
     pair of (meshes, dof) arrays
-        Tangential and separating part; m/m, and m/rad for rotations.
+        Tangential part, positive as the drive flank closes, and separating part, positive as both flanks
+        close; m/m, and m/rad for rotations and tilts.
     """
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     tangential, separating_part = np.zeros((2, len(layout.meshes), layout.dof))

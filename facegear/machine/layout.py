@@ -19,7 +19,9 @@ TILT_LETTERS = ("tilt_x", "tilt_y")
 
 
 class Role(StrEnum):
-    """Role of a pinion in the power flow."""
+    """Role of a pinion in the power flow: `input` drives, `tail` takes power off, `idler` has no torque
+    unless it is given one.
+    """
 
     INPUT = "input"
     IDLER = "idler"
@@ -95,14 +97,20 @@ class FaceGear:
 
     @property
     def sign(self) -> float:
-        """1 for the upper gear, -1 for the lower gear, which a pinion sees rotated by 180 degrees about its
-        own axis.
+        """1 for the upper gear, -1 for the lower gear.
+
+        A pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion's axis.
         """
         return -1.0 if self.side is Side.LOWER else 1.0
 
 
 class Kinematics(Protocol):
-    """Deflection of the meshes by motions of the bodies, and arms at which mesh forces turn the bodies."""
+    """Kinematics of the meshes: deflections by motions of the bodies, and arms at which mesh forces turn
+    the bodies.
+
+    It also says what the radii of a `Layout` are. `facegear.machine.kinematics` has two: geometric and
+    printed.
+    """
 
     @property
     def name(self) -> str:
@@ -110,8 +118,8 @@ class Kinematics(Protocol):
 
     @property
     def flanks_apart(self) -> bool:
-        """Whether each flank is a contact with a normal and a gap of its own, or both flanks of a mesh share
-        one line of action.
+        """Whether each flank is a contact with a normal and a gap of its own. If not, both flanks of a
+        mesh share one line of action and are one contact, as in equation (13) as printed.
         """
 
     @property
@@ -174,7 +182,9 @@ class Kinematics(Protocol):
         """
 
     def flank_rows(self, layout: "Layout") -> Array:
-        """Return the derivative of the flanks' deflections by the DOF.
+        """Return the derivative of the flanks' deflections by the degrees of freedom q.
+
+        The deflection of a flank is its row times q, less its error; positive closes the flank.
 
         Parameters
         ----------
@@ -193,8 +203,8 @@ class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
-    `kinematics` says what `pinion_radius` and `gear_radius` are. What follows from the fields is kept; its
-    arrays are only read.
+    `kinematics` says what `pinion_radius` and `gear_radius` are. Properties are computed once; their
+    arrays are shared and must not be changed.
     """
 
     pinions: tuple[Pinion, ...]
@@ -223,7 +233,9 @@ class Layout:
 
     @cached_property
     def gear_arm(self) -> float:
-        """Torque on a face gear over the mesh force that balances it, m."""
+        """Torque on a face gear over the mesh force that balances it, m: the base radius, as teeth have
+        it.
+        """
         return self.kinematics.arm(self.gear_radius, self.pressure_angle)
 
     @cached_property
@@ -233,7 +245,9 @@ class Layout:
 
     @cached_property
     def base_pitch(self) -> float:
-        """Way along the line of action in a mesh period, m."""
+        """Distance along the line of action that flanks travel in a mesh period, m: 2 pi pinion_arm /
+        pinion_teeth.
+        """
         return 2.0 * np.pi * self.pinion_arm / self.pinion_teeth
 
     @cached_property
@@ -242,7 +256,10 @@ class Layout:
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
 
     def tilt_distance(self, gear: int) -> float:
-        """Return the distance from the pinions' axes to the point that a gear tilts about.
+        """Return the distance along the gear's axis from the pinions' axes to the point about which a
+        gear tilts.
+
+        It is the pinion's pitch radius plus `Tilt.below`.
 
         Parameters
         ----------
@@ -260,12 +277,14 @@ class Layout:
 
     @cached_property
     def first_tilts(self) -> dict[int, int]:
-        """Index among the degrees of freedom of the first of two tilts, for every gear that may rock."""
+        """Index of the degree of freedom tilt_x of every gear that may tilt, by the gear's number; tilt_y
+        is the next.
+        """
         return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
 
     @cached_property
     def output(self) -> int:
-        """The gear that gives the power out: the upper one, else the only one."""
+        """Number of the gear that gives the power out, in `gears`: the upper one, else the only one."""
         sides = [gear.side for gear in self.gears]
         return sides.index(Side.UPPER) if Side.UPPER in sides else 0
 
@@ -286,12 +305,14 @@ class Layout:
 
     @cached_property
     def body_names(self) -> tuple[str, ...]:
-        """Names of the bodies in the same order."""
+        """Names of all bodies, pinions first."""
         return (*(pinion.name for pinion in self.pinions), *(gear.name for gear in self.gears))
 
     @cached_property
     def dof_names(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom, ``body:letter``."""
+        """Names `body:letter` of the degrees of freedom: x, y, z, theta of each body, then tilt_x, tilt_y
+        of tilting gears.
+        """
         names = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
         tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
         return (*names, *tilts)
@@ -303,8 +324,8 @@ class Layout:
 
     @cached_property
     def contacts(self) -> int:
-        """Number of contacts that move by themselves: both flanks of every mesh, which share one line of
-        action and are one contact in equation (13) as printed. Drive flanks come first.
+        """Number of contacts with a force of their own: both flanks of every mesh, drive flanks first. In
+        equation (13) as printed the two flanks of a mesh share one line of action and are one contact.
         """
         return len(self.meshes) * (2 if self.kinematics.flanks_apart else 1)
 
@@ -315,7 +336,10 @@ class Layout:
 
     @cached_property
     def angles(self) -> Array:
-        """Distribution angles, shape (pinions,), rad."""
+        """Distribution angles p of the pinions about the gears' axis, (pinions,), rad.
+
+        In the gears' frame a pinion lies towards (sin p, -cos p), and its x points along (cos p, sin p).
+        """
         return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
 
     @cached_property
@@ -367,7 +391,9 @@ class Layout:
 
 
 class PhaseConvention(StrEnum):
-    """`geometric`: the half turn counts for every pinion; `printed`: for the first only, equation (11)."""
+    """Phase of meshes with the lower of two gears: `geometric` adds half a turn of the pinion for every
+    pinion, `printed` for the first pinion only, as equation (11) has it.
+    """
 
     GEOMETRIC = "geometric"
     AS_PRINTED = "printed"

@@ -82,7 +82,7 @@ class LinearModel:
     spin
         What turning bodies add, None for nothing.
     slopes : (2, meshes, n)
-        Of the height W of the rim below each mesh, towards the teeth, by the coordinates of gears that bend:
+        Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
         dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
     """
 
@@ -108,12 +108,16 @@ class LinearModel:
 
     @property
     def loads(self) -> Array:
-        """Constant generalised loads (n,): torques, N m, and forces, N."""
+        """Constant generalised loads (n,): `torques` plus `forces`, N m for rotations and N for
+        displacements.
+        """
         return self.torques + self.forces
 
     @property
     def damping(self) -> Array:
-        """C without gyroscopic terms, (n, n), N s/m."""
+        """Damping matrix C without gyroscopic terms: mass_damping M + bearing_damping K + dampers, (n,
+        n), N s/m.
+        """
         return self.mass_damping * self.mass + self.bearing_damping * self.stiffness + self.dampers
 
     @cached_property
@@ -153,7 +157,8 @@ class LinearModel:
         return self.masses.reshape(-1, *(1,) * (velocities.ndim - 1)) * velocities
 
     def over_all(self, rows: Array) -> Array:
-        """Extend rows over the coordinates of the layout to all coordinates, with zeros.
+        """Extend rows over the coordinates of the layout to all n coordinates of the model, with zeros
+        behind.
 
         Parameters
         ----------
@@ -169,12 +174,12 @@ class LinearModel:
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
 
     def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
-        """Return `slopes` with columns of more coordinates.
+        """Return `slopes` with columns for k more coordinates behind the n present ones.
 
         Parameters
         ----------
         meshes : (meshes,) array of bool
-            The meshes that these coordinates move.
+            The meshes below which these coordinates move the rim; the others get zeros.
         added_slopes : (2, meshes of a gear, k) array
             Slopes by k more coordinates below these meshes, 1/m and m/m.
 
@@ -190,12 +195,13 @@ class LinearModel:
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Return the indices of the coordinates that belong to a body.
+        """Return the indices of the coordinates that belong to a body, those of tilts and elastic waves
+        included.
 
         Parameters
         ----------
         name : str
-            Name of the body.
+            Name of the body, as in the labels before the colon.
 
         Returns
         -------
@@ -207,10 +213,14 @@ class LinearModel:
 
 
 class Bodies(Protocol):
-    """Function that adds to the linear model of rigid masses on springs."""
+    """Function that extends a linear model: by coordinates of bending gears, or by other directions of
+    forces.
+    """
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with coordinates added behind its own, or with other matrices."""
+        """Return the model with coordinates added behind its own, or with other matrices or rows; the
+        given model is not changed.
+        """
 
 
 def mass_diagonal(layout: Layout) -> Array:
@@ -268,10 +278,11 @@ def bearing_matrix(layout: Layout) -> Array:
 
 
 def flank_jacobian(layout: Layout) -> Array:
-    """Return the derivative of the flanks' deflections by the DOF.
+    """Return the derivative of the flanks' deflections by the degrees of freedom, of the layout's
+    kinematics.
 
-    The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
-    tangential to the face gear and its y is along the face gear's axis.
+    The deflection of a flank is its row times q, minus its error; positive closes the flank. A pinion's x
+    is tangential to the face gear and its y is along the face gear's axis.
 
     Parameters
     ----------
@@ -287,7 +298,7 @@ def flank_jacobian(layout: Layout) -> Array:
 
 
 def _tilts(layout: Layout) -> list[Tilt]:
-    """Return the tilts of the gears that may tilt."""
+    """Return the tilts of the gears that may tilt, in the order of the gears."""
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
 
 
@@ -334,7 +345,7 @@ def lumped_model(
 
 @lru_cache(maxsize=16)
 def _alone(layout: Layout) -> LinearModel:
-    """Return the model without loads, damping and clearance, which all machines of a layout share."""
+    """Return the model of a layout without loads, damping and clearance; equal layouts share it."""
     zeros = np.zeros(layout.dof)
     return LinearModel(
         labels=layout.dof_names,
@@ -353,13 +364,17 @@ def _alone(layout: Layout) -> LinearModel:
 
 
 def _rings(layout: Layout, clearance: Array) -> Rings:
-    """Return the bearings with clearance: body, radial stiffness, N/m, and clearance, m."""
+    """Return the bearings of pinions whose clearance (pinions,), m, is positive, with the stiffness along
+    x.
+    """
     body = np.flatnonzero(clearance > 0.0)
     return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
 
 
 def _lengths(layout: Layout) -> Array:
-    """Return the length of a unit of each coordinate: turns count at the mesh, tilts at the mesh radius."""
+    """Return the length of a unit of each degree of freedom (dof,), m: 1 for displacements, the layout's
+    radius of the body for rotations, the mesh radius for tilts.
+    """
     lengths = np.ones(layout.dof)
     radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
     lengths[layout.spins] = radii

@@ -94,7 +94,8 @@ class LoadedContacts:
         return [None if np.isnan(force) else self._state(force) for force in self.rings]
 
     def any_undecided(self) -> bool:
-        """Whether some contact is neither open nor closed for certain.
+        """Whether some contact's force lies between the shares OPEN_SHARE and CLOSED_SHARE of the
+        largest.
 
         Returns
         -------
@@ -104,7 +105,9 @@ class LoadedContacts:
         return Contact.UNCERTAIN in [*self.flank_states(), *self.ring_states()]
 
     def _state(self, force: float) -> Contact:
-        """Return whether a flank with a force, N, is open, in contact, or too near to tell."""
+        """Return the state of a contact by its force, N, over the largest flank force: open up to
+        OPEN_SHARE, in contact from CLOSED_SHARE, uncertain between.
+        """
         largest = self.flanks.max()
         if force <= OPEN_SHARE * largest:
             return Contact.OPEN
@@ -112,7 +115,9 @@ class LoadedContacts:
 
 
 def loaded_contacts(machine: Machine) -> LoadedContacts:
-    """Return the contacts of geometric meshes with the mean law and constant errors.
+    """Return the contacts of geometric meshes in equilibrium under the mean torques.
+
+    The equilibrium has the mean law over the mesh cycle, constant errors, and no e(t).
 
     Parameters
     ----------
@@ -152,7 +157,8 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
 def forces_by_active_sets(machine: Machine) -> Array | None:
     """Compute the flank forces at mean stiffness: the statics of one position without compiled code.
 
-    Each step solves the springs of the flanks that were closed after the last step.
+    It starts with all drive flanks closed. Each step solves the linear springs of the closed flanks, then
+    closes the flanks whose deflection exceeds their gap, until the set no longer changes.
 
     Parameters
     ----------
@@ -162,8 +168,8 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     Returns
     -------
     (2 meshes,) array or None
-        N. None for bearings with clearance or a stiffness that depends on the load, and where the flanks do
-        not settle or leave a loaded body free.
+        N, drive flanks first. None for bearings with clearance or a stiffness that depends on the load,
+        and where the set does not settle in MAX_SETS steps or leaves a loaded body free.
     """
     linear = machine.static_machine.linear
     if linear.rings.body.size or not machine.constant_stiffness:
@@ -198,7 +204,10 @@ SAMPLES = 64
 
 
 def flank_springs(machine: Machine, contacts: LoadedContacts, contact_mask: Mask) -> Array:
-    """Return the mean stiffness of all flanks over the mesh cycle.
+    """Return the stiffness matrix of all flanks, averaged over the mesh cycle, at the mean torques.
+
+    It maps deflections of flanks to their forces and is diagonal, but for `coupled_meshes`, whose two
+    flanks have entries between them.
 
     Parameters
     ----------
@@ -222,7 +231,8 @@ def flank_springs(machine: Machine, contacts: LoadedContacts, contact_mask: Mask
 
 
 def coupled_meshes(machine: Machine, contact_mask: Mask) -> Integers:
-    """Return the wedged meshes whose flanks are coupled by what the modes leave out.
+    """Return the meshes whose two flanks both press (wedged) and have a compliance between them in
+    `Machine.softening`.
 
     Parameters
     ----------
@@ -242,10 +252,12 @@ def coupled_meshes(machine: Machine, contact_mask: Mask) -> Integers:
 
 
 def _coupled_stiffness(machine: Machine, contacts: LoadedContacts, mesh: int) -> Array:
-    """Return the stiffness (2, 2) of a wedged mesh: S at places of the mesh cycle, averaged.
+    """Return the stiffness (2, 2), N/m, of a wedged mesh, drive flank first: (1 + D R)^-1 D averaged over
+    phases.
 
-    A law in proportion to the compression is taken of the teeth alone, with the whole of R: the series of a
-    softened stiffness ends at the order of the teeth's own.
+    D holds the slopes of both flanks' laws at their compression, R the compliance behind the teeth. A law
+    in proportion to the compression is taken of the teeth alone, with the whole of R: the series of a
+    softened stiffness ends at the order of the teeth's own. Other laws hold the diagonal of R already.
     """
     assert machine.softening is not None
     behind, law, compression = machine.softening[mesh], flank_law(machine), contacts.compression

@@ -47,8 +47,8 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
     """Compute the modes at a pinion speed with the stiffness of the flanks that carry load.
 
     The stiffness is the mean of each flank, or its slope under the load where it depends on the load.
-    Bearings with clearance have the stiffness that they have under load. An open mesh stays open, a wedged
-    one has both flanks; undecided contacts count as open.
+    Bearings with clearance have their tangent stiffness under load. An open mesh stays open, a wedged one
+    (both flanks press) has both; undecided contacts count as open. Damping is left out.
 
     Parameters
     ----------
@@ -71,7 +71,10 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
 
 
 def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMachine:
-    """Compute loaded_modes() together with the contacts.
+    """Compute loaded_modes() together with the contacts and which frequencies are certain.
+
+    If contacts are undecided, modes are computed a second time with these closed; a frequency is certain
+    if it is the same to FREQUENCY_TOLERANCE.
 
     Parameters
     ----------
@@ -83,7 +86,7 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
     Returns
     -------
     VibratingMachine
-        Frequencies in Hz, forces in N.
+        Frequencies in Hz, forces in N; `modes` are those with undecided contacts open.
 
     Raises
     ------
@@ -109,7 +112,9 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
 
 
 def machine_in_motion(machine: Machine) -> Machine:
-    """Return the machine as it moves: flanks of wedged meshes coupled by what the modes leave out.
+    """Return the machine as it moves: with a coordinate attached to each mesh whose two flanks both press.
+
+    The coordinate couples the flanks by the compliance of the gear that its modes leave out.
 
     Parameters
     ----------
@@ -139,12 +144,16 @@ def machine_in_motion(machine: Machine) -> Machine:
 
 @lru_cache(maxsize=16)
 def _attached(bodies: ElasticGears, meshes: tuple[int, ...]) -> ElasticGears:
-    """Return the same bodies with coordinates attached; machines that share them share the result."""
+    """Return the bodies with a coordinate attached to each of `meshes` (numbers); machines that share
+    bodies share the result.
+    """
     return replace(bodies, attached=meshes)
 
 
 def _wedged_meshes(machine: Machine) -> list[int]:
-    """Return the numbers of wedged meshes whose flanks are coupled by what the modes leave out."""
+    """Return the numbers of the meshes whose two flanks press under the mean torques and are coupled by
+    `Machine.softening`.
+    """
     if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
@@ -155,13 +164,18 @@ def _wedged_meshes(machine: Machine) -> list[int]:
 def _modes(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...], speed: float
 ) -> Modes:
-    """Return the modes with the contacts closed whose state is among `closed_states`."""
+    """Return the modes at a pinion speed (rad/s) with those contacts closed whose state is among
+    `closed_states`.
+    """
     linear, springs = _springs_in_states(machine, contacts, closed_states)
     return modes_of(linear, linear.rows.T @ springs @ linear.rows, speed)
 
 
 def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
-    """Return the linear model with its bearings under load, and the stiffness of the flanks.
+    """Return the linear model with its bearings linearised under load, and the stiffness of the pressed
+    flanks.
+
+    Undecided contacts count as open.
 
     Parameters
     ----------
@@ -171,7 +185,8 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
     Returns
     -------
     tuple of LinearModel and (2 meshes, 2 meshes) array
-        The stiffness in N/m is that of `flank_springs`: zero for flanks that carry no load.
+        The model holds no flanks: add rows^T stiffness rows. The stiffness in N/m is that of
+        `flank_springs`: zero for flanks that carry no load.
 
     Raises
     ------
@@ -184,7 +199,9 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
 def _springs_in_states(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> tuple[LinearModel, Array]:
-    """Return linear model and flank stiffness with the flanks closed that are in the given states."""
+    """Return the linear model with linearised bearings and the flank stiffness (2 meshes, 2 meshes), N/m,
+    with those contacts closed whose state is among `closed_states`.
+    """
     contact_mask = np.array([state in closed_states for state in contacts.flank_states()])
     return _pressed_bearings(machine, contacts, closed_states), flank_springs(machine, contacts, contact_mask)
 
@@ -192,10 +209,11 @@ def _springs_in_states(
 def _pressed_bearings(
     machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> LinearModel:
-    """Return the linear model with every bearing that has clearance replaced by its tangent.
+    """Return the linear model with every bearing that has clearance replaced by its tangent stiffness.
 
-    A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - clearance /
-    distance). A bearing that floats inside its ring carries nothing.
+    A bearing pressed against its ring has stiffness k along its load, and k (1 - clearance / distance)
+    across it. A bearing whose state is not among `closed_states` floats inside its ring and carries
+    nothing.
     """
     linear, states = machine.linear, contacts.ring_states()
     if not linear.rings.body.size:
@@ -295,7 +313,9 @@ def contact_table(machine: Machine, vibrating_machine: VibratingMachine, stiffne
 
 
 def _mesh_state(drive: Contact, back: Contact) -> str:
-    """Name the state of a mesh from the states of its two flanks."""
+    """Return the state of a mesh from those of its two flanks: drive, back, wedged (both closed), open or
+    undecided.
+    """
     if Contact.UNCERTAIN in (drive, back):
         return Contact.UNCERTAIN.value
     if drive is Contact.IN_CONTACT:

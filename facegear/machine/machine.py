@@ -46,13 +46,17 @@ class OpenFlanks(StrEnum):
 
     @property
     def is_damped_when_open(self) -> bool:
-        """Whether dampers act on open flanks, too."""
+        """Whether dampers act on open flanks, too: True for `always` and `mesh_deflection`."""
         return self in (OpenFlanks.ALWAYS, OpenFlanks.MESH_DEFLECTION)
 
 
 @dataclass(frozen=True)
 class Damping:
-    """Mesh damping (N s/m), mass damping lambda (1/s) and bearing damping beta (s) of equation (21)."""
+    """Damping of a machine, equation (21).
+
+    mesh: damping along the line of action, N s/m; mass: lambda, factor of the mass matrix, 1/s; bearing:
+    beta, factor of the bearing stiffness, s; open_flanks: where mesh damping acts.
+    """
 
     mesh: float
     mass: float
@@ -62,8 +66,11 @@ class Damping:
 
 @dataclass(frozen=True, eq=False)
 class FlankTables:
-    """Load-dependent forces of the flanks in a face gear's meshes over the reference's mesh cycle, each as
-    those of a drive flank: the back flank is the drive flank of the pair in a mirror.
+    """Load-dependent forces of the flanks at one face gear over the reference's mesh cycle.
+
+    - drive: force of the drive flank by mesh position and compression
+    - back: the same table for the drive flank of the mirrored pair, in which the back flank drives; users
+      of the back flank call `back.mirror()`
     """
 
     drive: ForceTable
@@ -160,7 +167,10 @@ class Machine:
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Masses, bearings, loads and the directions of the contacts."""
+        """Linear model of the whole machine, computed once: `lumped_model`, extended by the drive line,
+        then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates are
+        the layout's.
+        """
         model = self.lumped_model
         for add_part in (
             self.drive_line,
@@ -172,7 +182,9 @@ class Machine:
 
     @cached_property
     def lumped_model(self) -> LinearModel:
-        """Linear model of the layout alone: rigid bodies on springs."""
+        """Linear model of the layout alone: rigid bodies on bearing springs with torques, forces and
+        damping, without drive line and bending gears; layout.dof coordinates.
+        """
         damping = (self.damping.mass, self.damping.bearing)
         return lumped_model(
             self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
@@ -180,10 +192,13 @@ class Machine:
 
     @cached_property
     def without_errors(self) -> "Machine":
-        """Machine without backlash, constant errors and slow errors; its bearing clearances are 1 m or 0.
+        """Machine without backlash, constant errors, runouts, pitch deviations and errors of single
+        teeth.
 
-        Machines that differ in these errors alone share one object, so that all that does not depend on them
-        is computed once.
+        Stiffness factors, clocking and the series e(t) of single meshes stay. Bearing clearances become 1
+        m where they are positive, which only marks the bearing, and stay 0 elsewhere. Machines that
+        differ in these errors alone share one object, so that results which do not depend on them are
+        cached once.
         """
         imperfections, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
         return _machine_without_errors(
@@ -196,8 +211,8 @@ class Machine:
 
     @cached_property
     def static_machine(self) -> "Machine":
-        """Machine without its drive line where static results with it follow from those without it, else this
-        machine.
+        """Machine without its drive line, if `DriveLine.extend_displacements` gives the static results
+        with it from those without it; else this machine.
         """
         line = self.drive_line
         if line is None or not line.static_from_layout(self.lumped_model):
@@ -206,14 +221,19 @@ class Machine:
 
     @property
     def torque_coordinates(self) -> Integers:
-        """Index of the coordinate that the torque of each body turns, (bodies,)."""
+        """Index of the coordinate on which the torque of each body acts, (bodies,): the body's rotation,
+        or that of the last turning mass of its chain in the drive line.
+        """
         if self.drive_line is not None:
             return self.drive_line.torque_coordinates()
         return np.arange(self.lumped_model.size)[self.layout.spins]
 
     @cached_property
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:
-        """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
+        """Linear stiffness series (N/m) of each mesh over the reference's mesh cycle, not shifted by its
+        phase: the common series times the mesh's stiffness factor, in series with `own_softening` where
+        there is one.
+        """
         series_of_teeth = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
         if self.own_softening is None:
             return tuple(series_of_teeth)
@@ -224,9 +244,10 @@ class Machine:
 
     @property
     def own_softening(self) -> Array | None:
-        """Compliance in series with a flank under its own force, (meshes,), m/N; both flanks have the same.
+        """Compliance of the body behind a flank under that flank's force alone, (meshes,), m/N.
 
-        Motion takes this part of `softening` alone, see `loaded_modes.machine_in_motion`.
+        It is entry [0, 0] of `softening`, equal for both flanks. Motion puts it in series with the teeth;
+        for the coupling between the flanks see `loaded_modes.machine_in_motion`.
         """
         return None if self.softening is None else self.softening[:, 0, 0]
 
@@ -237,12 +258,19 @@ class Machine:
 
     @property
     def constant_stiffness(self) -> bool:
-        """Whether the force of every contact is proportional to how far it is pressed in."""
+        """Whether the force of every contact is proportional to its compression: neither `law` nor
+        `tables` is given.
+        """
         return self.law is None and self.tables is None
 
     @property
     def pushes(self) -> Array:
-        """Directions (rows, n) of all forces beside those of the flanks: external ones, and friction."""
+        """Directions (rows, n) of all forces that excite motion beside those of the flanks.
+
+        First the external forces, normalised; then one row for each mesh and each part of friction
+        (`disturbances.PARTS`), where there is friction; then one normalised row for each periodic torque,
+        without its rigid rotation. Rows that are zero are left out, except those of friction.
+        """
         linear = self.linear
         pushes = [np.zeros((0, linear.size))]
         if linear.forces.any():
@@ -256,17 +284,21 @@ class Machine:
         return np.concatenate(pushes)
 
     def straining_torque(self, body: int) -> Array:
-        """Return the force of a unit torque on a body, without what turns all bodies together.
+        """Return the generalised force of a unit torque on a body, less the inertia force of the common
+        rotation.
+
+        The common rotation of all bodies strains no mesh and no bearing; `without_rigid_rotation` takes
+        it off.
 
         Parameters
         ----------
         body : int
-            Number of the body in the layout.
+            Number of the body in the layout. The torque acts on its entry of `torque_coordinates`.
 
         Returns
         -------
         (n,) array
-            N and N m for 1 N m.
+            Generalised force on all coordinates for a torque of 1 N m, N and N m.
         """
         torque = np.zeros(self.linear.size)
         torque[self.torque_coordinates[body]] = 1.0
@@ -275,12 +307,16 @@ class Machine:
 
     @cached_property
     def phases(self) -> Array:
-        """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
+        """Lag of each mesh's stiffness behind the reference mesh, mesh periods in [0, 1), shape
+        (meshes,).
+        """
         return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
 
     @property
     def error_phases(self) -> Array:
-        """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
+        """Lag of each mesh's transmission error, (meshes,), mesh periods: `error_lags` if given, else
+        `phases`.
+        """
         return self.phases if self.error_lags is None else self.error_lags
 
 
@@ -298,8 +334,12 @@ def _machine_without_errors(
     series: dict[int, Harmonics],
     with_clearance: Mask,
 ) -> Machine:
-    """Return the machine with the fields of `_WITHOUT_ERRORS`, without backlash and with clearances of 1
-    m.
+    """Return the machine with given fields, without backlash, constant and slow errors; equal arguments
+    share it.
+
+    `rest` holds the values of the fields `_WITHOUT_ERRORS`, in that order; stiffness (meshes,) are
+    factors; clocking (pinions,), pitches; series: e(t) of single meshes by index; with_clearance
+    (pinions,): bearings that get a clearance of 1 m.
     """
     field_values = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
     flaws = replace(
@@ -313,7 +353,7 @@ def _machine_without_errors(
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
-    """Return the mesh frequency at a pinion speed.
+    """Return the mesh frequency at a pinion speed: pinion teeth * speed / 60.
 
     Parameters
     ----------
@@ -378,19 +418,21 @@ def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0
 
 
 def require_balance(layout: Layout, torques: Array) -> None:
-    """Raise InvalidInput unless the torques are in balance for the rigid rotation.
+    """Raise InvalidInput unless the torques are in balance for the rigid rotation of all bodies.
+
+    Each torque over its body's radius is a force at the mesh; the sum of these forces must vanish.
 
     Parameters
     ----------
     layout : Layout
         Bodies and mesh geometry.
     torques : (bodies,) array
-        Torques on all bodies, N m.
+        Torques on all bodies, pinions first, N m, positive in the body's positive sense of rotation.
 
     Raises
     ------
     InvalidInput
-        If the excess at the mesh is above TORQUE_BALANCE of the sum of the tangential forces.
+        If the size of the sum is above TORQUE_BALANCE times the sum of the sizes of these forces.
     """
     pinions = len(layout.pinions)
     tangential = np.concatenate(

@@ -92,8 +92,9 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
 
 
 def _stable(omega_squared: Array, speed: float) -> Array:
-    """Return ascending squared frequencies with rounding set to zero; raise NotConverged if one
-    is negative.
+    """Return ascending squared angular frequencies (n,), 1/s2, with rounding set to zero.
+
+    Raises NotConverged, naming the speed (rad/s), if one is negative, as the position is then not stable.
     """
     noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
     omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
@@ -108,7 +109,8 @@ def _stable(omega_squared: Array, speed: float) -> Array:
 def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
     """Compute the modes of rotating bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
 
-    With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
+    stiffness (n, n): bearings and meshes, N/m; speed of the pinions, rad/s. Damping is left out. With u =
+    K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
     skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch 1974).
     """
     assert linear.spin is not None
@@ -133,7 +135,9 @@ def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
 
 
 def _equal_runs(frequencies: Array) -> tuple[tuple[int, int], ...]:
-    """Split ascending frequencies into runs that agree to rounding."""
+    """Split ascending frequencies (n,) into runs (start, stop) whose neighbours differ by at most EQUAL
+    times the largest of all.
+    """
     gaps = np.diff(frequencies) > EQUAL * frequencies[-1]
     edges = [0, *(np.flatnonzero(gaps) + 1).tolist(), frequencies.size]
     return tuple(itertools.pairwise(edges))
@@ -146,7 +150,7 @@ AMPLITUDE_FRACTION = 0.01
 
 
 class ModeClass(StrEnum):
-    """Classes of section 3.1."""
+    """Classes of modes of section 3.1 of the source paper, by which bodies have the kinetic energy."""
 
     RIGID = "rigid body"
     PINION = "pinion"
@@ -156,7 +160,13 @@ class ModeClass(StrEnum):
 
 @dataclass(frozen=True)
 class ModeName:
-    """Class, symbols as `input, idler T-R; face gear T(y)`, fraction of the kinetic energy in the pinions."""
+    """Name of a mode.
+
+    - mode_class: which bodies move
+    - symbols: how they move, such as `input, idler T-R; face gear T(y)`; T: translation, R: rotation
+      about the own axis, A: motion along it
+    - pinion_energy_fraction: part of the kinetic energy in the pinions
+    """
 
     mode_class: ModeClass
     symbols: str
@@ -188,7 +198,9 @@ def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeN
 
 
 def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
-    """Name the modes of one frequency by their class and the coordinates that move most."""
+    """Return class, symbols and pinion energy fraction of the modes of one frequency (Hz) from shapes (n,
+    modes), summed over these modes.
+    """
     energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
     pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
     pinion_fraction = float(energy[pinions].sum() / energy.sum())
@@ -207,8 +219,12 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
 
 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
-    """Return symbols of the bodies that move in a mode and how, from the amplitudes (dof,) of all coordinates
-    as lengths.
+    """Return symbols of the bodies that move in a mode and how, such as `input, idler T-R; face gear
+    T(y)`.
+
+    labels: `body:letter` of each coordinate; amplitudes (n,) of all coordinates as lengths, m.
+    Coordinates with more than AMPLITUDE_FRACTION of the largest count; roles of pinions with the same
+    motion share an entry.
     """
     letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
     for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
@@ -225,11 +241,12 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
 
 
 def _motion(moves: set[str]) -> str:
-    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of the coordinates that
-    move.
+    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of its coordinates
+    that move.
 
-    A single direction of translation is named, and so is a motion that the rigid body does not have, up to
-    its first blank.
+    T is translation, T(x) or T(y) in one direction alone, R rotation, A axial motion. A motion that the
+    rigid body does not have is named by its letters up to the first blank, such as n2 for two nodal
+    diameters.
     """
     letters = []
     if moves & {"x", "y"}:

@@ -84,7 +84,8 @@ def number_table(ratings: Ratings) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        Columns quantity (unit at its end) and value.
+        Columns quantity and value; rows gear_ratio, pinion_speed_rpm, gear_speed_rpm, mesh_frequency_hz,
+        power_in_kw, power_out_kw and power_imbalance.
     """
     rows = {
         "gear_ratio": ratings.ratio,
@@ -189,6 +190,8 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
 
 
 def _body_speeds(layout: Layout, speed_rpm: float) -> Array:
-    """Return the speed of each body, rpm, from the speed of the pinions."""
+    """Return the speed of each body (bodies,), rpm, all positive: pinions, then gears slower by the tooth
+    numbers.
+    """
     gear = speed_rpm * layout.pinion_teeth / layout.gear_teeth
     return np.concatenate([np.full(len(layout.pinions), speed_rpm), np.full(len(layout.gears), gear)])

@@ -43,13 +43,14 @@ class TurnOrders:
     Attributes
     ----------
     turning
-        Whose turns each order counts, of GEARS.
+        Name from GEARS for each order: the gear whose turns it counts.
     order : (n,)
-        Vibrations in one of its turns.
+        Vibrations in one turn of that gear.
     teeth : (n,)
-        Of that gear: the frequency is `order` over `teeth` times the mesh frequency.
+        Teeth of that gear: the frequency is `order` over `teeth` times the mesh frequency.
     error : (n, 2 meshes)
-        Complex amplitudes, m, drive flanks first; a positive error keeps a flank from touching.
+        Complex amplitudes a of errors Re[a e^(i w t)], m, drive flanks first; a positive error keeps a
+        flank from touching.
     """
 
     turning: list[str]
@@ -76,12 +77,13 @@ class TurnOrders:
 
     @property
     def of_mesh(self) -> Array:
-        """Frequency over that of the mesh (n,)."""
+        """Frequency of each order over that of the mesh, (n,): order / teeth."""
         return np.asarray(self.order / self.teeth)
 
 
 def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
-    """Return the orders of runouts, pitch deviations and single teeth.
+    """Return the orders of runouts, pitch deviations and single teeth, by a Fourier transform over a
+    whole turn.
 
     Parameters
     ----------
@@ -93,7 +95,8 @@ def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
     Returns
     -------
     TurnOrders
-        Orders whose error is above ERROR_TOLERANCE of the largest; amplitudes in m.
+        Orders of the pinions, then of the face gears, whose error is above ERROR_TOLERANCE of the
+        largest; amplitudes in m. Both gears may have an order at the same frequency.
     """
     layout = machine.layout
     turning: list[str] = []
@@ -117,7 +120,9 @@ def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
 
 
 def _errors_of(machine: Machine, gear: str) -> Machine:
-    """Return the machine with errors of the pinions alone, or of the face gears alone."""
+    """Return the machine with slow errors of the pinions alone, or of the face gears alone; `gear` is
+    from GEARS.
+    """
     flaws = machine.imperfections
     even, teeth = flaws.without_slow_errors, flaws.teeth
     if gear == "pinion":
@@ -130,7 +135,7 @@ def _errors_of(machine: Machine, gear: str) -> Machine:
 
 
 def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return zeros in place of two curves."""
+    """Return zeros in place of two curves (drive and back flank), of the same shapes."""
     return np.zeros_like(curves[0]), np.zeros_like(curves[1])
 
 
@@ -158,7 +163,7 @@ class LoadedMachine:
         return np.asarray(np.diagonal(self.springs) > 0.0)
 
     def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:
-        """Return the elastic forces of the flanks that carry load, at a speed.
+        """Return the elastic forces of the flanks that carry load, excited by errors at a speed.
 
         Parameters
         ----------
@@ -172,7 +177,7 @@ class LoadedMachine:
         Returns
         -------
         (n, 2 meshes) complex array
-            Amplitudes, N.
+            Amplitudes, N, beside the static force; 0 for flanks without load.
         """
         rows, speed = self.linear.rows, speed_rpm * np.pi / 30.0
         forces = np.zeros_like(orders.error)
@@ -184,7 +189,7 @@ class LoadedMachine:
         return forces
 
     def excited_motion(self, machine: Machine, excitation: Excitation, speed_rpm: float) -> ComplexArray:
-        """Complex amplitudes of all coordinates under one periodic torque.
+        """Return the complex amplitudes of all coordinates under one periodic torque.
 
         Parameters
         ----------
@@ -193,7 +198,7 @@ class LoadedMachine:
         excitation : Excitation
             The torque.
         speed_rpm : float
-            Of the pinions, rpm.
+            Speed of the pinions, rpm.
 
         Returns
         -------
@@ -222,7 +227,10 @@ class LoadedMachine:
         return np.asarray(self.springs @ (self.linear.rows @ motion))
 
     def _dynamic(self, speed: float, omega: float) -> ComplexArray:
-        """Return the dynamic stiffness (n, n) at a pinion speed and a frequency, both in rad/s."""
+        """Return the dynamic stiffness (n, n) of coordinates, N/m, at a pinion speed and an excitation
+        frequency, both in rad/s: the bracket on the left of this module's equation, with the terms of
+        turning bodies.
+        """
         linear, rows = self.linear, self.linear.rows
         stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows
@@ -232,7 +240,8 @@ class LoadedMachine:
         return np.asarray(stiffness + 1j * omega * damping - omega**2 * linear.mass)
 
     def at_rest(self, orders: TurnOrders) -> ComplexArray:
-        """Return the elastic forces of the flanks that carry load, at a speed close to zero.
+        """Return the elastic forces of the flanks that carry load at a speed close to zero, without
+        inertia and damping.
 
         Parameters
         ----------

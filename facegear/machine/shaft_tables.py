@@ -35,16 +35,17 @@ def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
 
 
 def shaft_bearing_loads(line: DriveLine, forces: Array, moments: Mapping[int, Array] | None = None) -> Array:
-    """Return the loads of the shafts on their bearings.
+    """Return the loads of the shafts on their bearings, from the balance of each elastic shaft.
 
     Parameters
     ----------
     line : DriveLine
         The drive line.
     forces : (K, bodies, 3) array
-        Forces of the bodies on what they sit on, N.
+        Forces of the bodies on what they sit on, along x, y, z, N.
     moments : mapping of int to (K, 2) array, or None
-        Moments about x and y by the numbers of pinions, N m.
+        Moments of pinions on their shafts about x and y by the numbers of pinions, N m; 0 for those left
+        out.
 
     Returns
     -------
@@ -147,7 +148,9 @@ def deflection_table(
 
 
 def _stations(shaft: Shaft) -> Array:
-    """Return the positions along a shaft, m, at which its deflection is listed."""
+    """Return rising positions along a shaft, m from its beginning, at which its deflection is listed:
+    STATIONS even ones, ends of segments, bearings and the pinion's middle, each once.
+    """
     ends = np.cumsum([segment.length for segment in shaft.segments])
     bearing_positions = [bearing.position for bearing in shaft.bearings]
     return np.unique(
@@ -182,7 +185,7 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 
 
 def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
-    """Return torque and twist of the torsional springs.
+    """Return torque and twist of the torsional springs under the mean torques.
 
     Parameters
     ----------
@@ -194,9 +197,9 @@ def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring,
-        twist_deg of it, windup_deg of it and of all before it, and frequency_hz of the chain by itself, the
-        body free.
+        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring
+        (that of the body), twist_deg of that spring, windup_deg of it and of all springs before it, and
+        frequency_hz of the body with its chain alone: the k-th frequency in the row of mass k.
     """
     rows = []
     for body, _, chain in line.chains():
@@ -211,7 +214,10 @@ def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
 
 
 def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]) -> Array:
-    """Return the natural frequencies of a body and its chain in the open, without the zero.
+    """Return the natural frequencies of a body and its chain of turning masses, free of all meshes and
+    bearings.
+
+    The zero frequency of their common rotation is left out.
 
     Parameters
     ----------
@@ -225,7 +231,7 @@ def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]
     Returns
     -------
     (masses,) array
-        Hz.
+        Hz, rising.
     """
     inertias = np.array([line.layout.bodies[body].inertia, *(mass.inertia for mass in chain)])
     stiffness = np.zeros((inertias.size, inertias.size))

@@ -47,7 +47,8 @@ def at_rest(machine: Machine) -> Machine:
 
 @dataclass(frozen=True, eq=False)
 class StaticGears:
-    """Gears of `elastic` by their static compliance alone.
+    """Gears of `elastic` by their whole static compliance, in place of their modes; called with a linear
+    model it adds their coordinates.
 
     Attributes
     ----------
@@ -61,7 +62,9 @@ class StaticGears:
     with_slopes: bool = False
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with the coordinates of every gear behind its own."""
+        """Return the model with coordinates of every gear behind its own, with unit stiffness and no
+        damping.
+        """
         model, layout = base_model, self.elastic.layout
         for gear, body in self.elastic.bodies.items():
             meshes = np.array([g == gear for _, g in layout.meshes])
@@ -123,6 +126,9 @@ def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
 def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Array]:
     """Return R of the flanks as `static_rows`, and of the slopes below all meshes of the gear.
 
+    The product of two rows of R is the static compliance between the two quantities; slopes along the
+    radius count times the gear radius.
+
     Parameters
     ----------
     body : ReducedBody
@@ -135,8 +141,9 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
     Returns
     -------
     pair of arrays
-        R of the flanks (2 meshes of the gear, p), and of the slopes (2, meshes, p): along the radius over the
-        gear radius, and round the axis. R R^T of the flanks is in m/N.
+        R of the flanks (2 meshes of the gear, p), drive flanks first, and of the slopes (2, meshes, p):
+        dW/dr and dW/dphi for a unit of each of p coordinates with unit stiffness. R R^T of the flanks is
+        in m/N.
     """
     whole = body.compliance_with_slope(layout.gear_radius)
     whole[0, 1, [0, 2]] = whole[0, [0, 2], 1] = 0.0  # along the axis or round it, never both
@@ -149,10 +156,11 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
 
 
 def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
-    """Return motions of the flanks, and slopes below the meshes, by waves of all orders with unit stiffness.
+    """Return motions of the flanks (2 meshes, c), and slopes (2, meshes, c), by waves of all orders.
 
-    shapes (orders, i, k): W_p, V_p and the slopes, each by k waves of every order; turning (k,): which waves
-    of order 0 go round the axis. The slopes are empty where `shapes` has none.
+    A wave is a coordinate with unit stiffness; order 0 has k of them, every other order k cosines and k
+    sines. shapes (orders, i, k): W_p, V_p and the slopes, each by k waves of every order; turning (k,):
+    which waves of order 0 go round the axis. The slopes are empty where `shapes` has none.
     """
     count = shapes.shape[2]
     orders = np.repeat(np.arange(len(shapes)), count)
@@ -171,7 +179,9 @@ def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Ar
 
 
 def _condense_columns(rows: Array) -> Array:
-    """Return R with as many columns as R R^T of the rows needs."""
+    """Return rows (r, p) with as few columns as keep rows rows^T, from the singular values above
+    RANK_TOLERANCE of the largest.
+    """
     left, values, _ = np.linalg.svd(rows, full_matrices=False)
     is_significant = values > RANK_TOLERANCE * values.max()
     return np.asarray(left[:, is_significant] * values[is_significant])

@@ -46,19 +46,19 @@ class Balance:
     rounding: Array
 
     def require(self, limit: float, names: list[str]) -> None:
-        """Raise NotConverged for the worst position whose residual is above the limit and rounding.
+        """Raise NotConverged for the worst position whose residual is above the limit plus its rounding.
 
         Parameters
         ----------
         limit : float
-            Largest residual, relative.
+            Largest residual, relative to the largest applied or mesh force.
         names : list of str
-            Name of each position for the message.
+            Name of each of the K positions for the message.
 
         Raises
         ------
         NotConverged
-            If the residual of a position is above the limit and its rounding.
+            If the residual of a position is above the limit plus its rounding, or is not a number.
         """
         over = self.residual - limit - self.rounding
         if (over <= 0.0).all():
@@ -74,29 +74,29 @@ class Balance:
 def balance(
     linear: LinearModel, displacements: Array, forces: Array, stiffness: Array, gaps: Array
 ) -> Balance:
-    """Compute the balance of bearings, contacts and torques on every body.
+    """Compute the force and moment out of balance on every body: bearings + rows^T forces - loads.
+
+    It uses the whole matrices of the model, not the unknowns of a solver. Contacts are both flanks of
+    every mesh, or every mesh as one with a force of either sign.
 
     Parameters
     ----------
     linear : LinearModel
         Bearings, loads and directions of the contacts of the machine.
     displacements : (K, dof) array
-        m and rad.
+        Displacements from the unloaded position, m and rad.
     forces : (K, F) array
-        Contact forces, N.
+        Contact forces, N, positive as they resist positive motion along their rows; F first rows are
+        used.
     stiffness : (K, F) array
-        Stiffness of the contacts, N/m, by which rounding of the forces is judged.
+        Stiffness of the contacts, N/m; only used to estimate the rounding of the forces.
     gaps : (K, F) array
-        Gaps of the contacts, m, for the same purpose.
+        Gaps of the contacts, m; only used for that estimate.
 
     Returns
     -------
     Balance
-        Relative to the largest applied or mesh force.
-
-    References
-    ----------
-    contacts are both flanks of every mesh, or every mesh as one with a force of either sign.
+        Residual and rounding (K,), relative to the largest applied or contact force of each position.
     """
     rows, arms, loads = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
     left_over = bearing_loads(linear, displacements) + forces @ rows - loads
@@ -112,7 +112,10 @@ def balance(
 
 
 def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
-    """Return the force or moment of every degree of freedom on its bearing, beyond any clearance.
+    """Return the force or moment of every degree of freedom on its bearing: stiffness times displacement.
+
+    A bearing with radial clearance c presses with k (1 - c / distance) times its displacement (x, y)
+    where the distance is above c, else not at all.
 
     Parameters
     ----------
@@ -124,7 +127,7 @@ def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
     Returns
     -------
     (K, dof) array
-        N and N m.
+        N and N m, positive along the displacement (force of the body on its bearing).
     """
     loads = displacements @ linear.stiffness_without_rings
     rings, at = linear.rings, linear.ring_coordinates
@@ -144,11 +147,14 @@ RESIDUAL_LIMIT = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """Displacements (dof,), mesh deflections (meshes,) in m and rad, elastic mesh forces (meshes,) in N.
+    """Static equilibrium at one position.
 
-    A mesh's force is that of its drive flank less that of its back flank, its deflection the tangential
-    part. `residual` is the largest force or moment (at its arm) on a body out of balance, over the largest
-    applied or mesh force.
+    - displacements (dof,): m and rad
+    - deflections (meshes,): tangential part: half of (drive less back deflection, each less its error);
+      of printed meshes the deflection along their one line of action, m
+    - forces (meshes,): elastic force, drive flank less back flank, N
+    - residual: largest force or moment (at its arm) out of balance on a body, over the largest applied or
+      mesh force
     """
 
     displacements: Array
@@ -159,9 +165,12 @@ class Equilibrium:
 
 @dataclass(frozen=True, eq=False)
 class Equilibria:
-    """K positions: displacements (K, dof) in m and rad, flank_forces (K, 2 meshes) in N, drive flanks first.
+    """Static equilibria at K positions.
 
-    deflections (K, meshes): tangential, m. residual (K,): as in Equilibrium.
+    - displacements (K, dof): m and rad
+    - deflections (K, meshes): tangential part, as in `Equilibrium`, m
+    - flank_forces (K, 2 meshes): compressive forces, drive flanks first, N
+    - residual (K,): as in `Equilibrium`
     """
 
     displacements: Array
@@ -177,16 +186,19 @@ class Equilibria:
 
 
 def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilibrium:
-    """Compute the static equilibrium at one position of the mesh cycle, or with mean stiffness and no e(t).
+    """Compute the static equilibrium at one position of the mesh cycle, or with mean stiffness and no
+    e(t).
 
-    A body that is free inside its backlash is left at one of its possible positions.
+    A body that is free inside its backlash is left at one of its possible positions. Either kinematics is
+    accepted.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     cycles : float or None
-        Mesh cycles from the start, periods; None for the mean stiffness without e(t).
+        Mesh cycles from the start, periods; None for the mean stiffness with constant errors and without
+        e(t).
 
     Returns
     -------
@@ -207,7 +219,11 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
 
 
 def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
-    """Return the equilibrium of meshes whose two flanks share one line of action."""
+    """Return the equilibrium of printed meshes, whose flanks share one line of action, by
+    `dense_equilibrium`.
+
+    cycles: mesh periods, None for the mean stiffness without e(t).
+    """
     law = line_law(machine)
     law = law.mean() if cycles is None else law.at_phase(cycles)
     error = np.zeros(law.contacts) if cycles is None else machine.error(cycles - machine.error_phases)
@@ -224,19 +240,19 @@ def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
 
 
 def equilibria(machine: Machine, cycles: Array) -> Equilibria:
-    """Compute the static equilibrium at given mesh positions, with all errors.
+    """Compute the static equilibrium at given mesh positions, with constant, periodic and slow errors.
 
     Parameters
     ----------
     machine : Machine
         A machine whose meshes have two flanks each.
     cycles : (K,) array
-        Mesh cycles from the start, periods.
+        Mesh cycles from the start, periods, counted on over turns as slow errors need it.
 
     Returns
     -------
     Equilibria
-        m, rad and N.
+        One entry for each position, in m, rad and N.
 
     Raises
     ------
@@ -275,18 +291,19 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     """Compute static equilibria with given laws and errors of the flanks.
 
     Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
-    positions together.
+    positions together; else dense algebra solves one after the other. Every result is checked by
+    `balance`.
 
     Parameters
     ----------
     machine : Machine
         A machine whose meshes have two flanks each.
     law : MeshLaw
-        Law of the flanks.
+        Law of the 2 meshes flanks, in place of the machine's own.
     cycles : (K,) array
         Positions at which the law is taken, mesh periods.
     errors : (K, 2 meshes) array
-        Errors of the flanks, m.
+        Errors of the flanks, m; positive opens the flank. Half the backlash is added here.
     names : list of str
         Name of each position for messages.
 
@@ -315,14 +332,20 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
 
 
 def _by_blocks(blocks: StaticBlocks, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
-    """Return displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
+    """Return displacements (K, dof), m and rad, and flank forces (K, flanks), N, by the compiled solver.
+
+    law: at the K positions; gaps (K, flanks): deflections at which flanks touch, m.
+    """
     start = np.zeros(blocks.coordinates.size)
     solution, forces, _ = settle_all(blocks.springs, law, gaps, TOLERANCE, start)
     return blocks.displacements(solution), forces
 
 
 def _one_by_one(linear: LinearModel, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
-    """Return displacements (K, dof) and flank forces (K, flanks) by dense algebra."""
+    """Return displacements (K, dof), m and rad, and flank forces (K, flanks), N, by dense algebra.
+
+    cycles (K,): positions, mesh periods; gaps (K, flanks): deflections at which flanks touch, m.
+    """
     never = np.full(gaps.shape[1], -np.inf)
     solutions = [
         dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)

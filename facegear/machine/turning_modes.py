@@ -37,24 +37,28 @@ LISTED_ENERGY = 0.01
 
 @dataclass(frozen=True, eq=False)
 class TurningModes:
-    """m modes that vibrate: l (m,) in 1/s with positive imaginary part, ascending by it; shapes (n, m)."""
+    """m damped modes that vibrate.
+
+    - exponents (m,): eigenvalues l, 1/s, with positive imaginary part, ascending by it
+    - shapes (n, m): displacement part of the eigenvectors, of arbitrary scale
+    """
 
     exponents: ComplexArray
     shapes: ComplexArray
 
     @property
     def frequencies(self) -> Array:
-        """Hz, with damping."""
+        """Damped natural frequencies (m,): imaginary part of l over 2 pi, Hz."""
         return np.asarray(self.exponents.imag / (2.0 * np.pi))
 
     @property
     def damping_ratios(self) -> Array:
-        """Fraction of critical damping; negative for a mode that grows."""
+        """Damping ratios (m,), -Re l / |l|: fraction of critical damping; negative for a mode that grows."""
         return np.asarray(-self.exponents.real / np.abs(self.exponents))
 
 
 def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: float) -> TurningModes:
-    """Compute the damped modes at a pinion speed.
+    """Compute the damped modes at a pinion speed, from the eigenvalues of the state matrix.
 
     Parameters
     ----------
@@ -70,7 +74,8 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
     Returns
     -------
     TurningModes
-        Modes that vibrate, ascending by frequency; exponents in 1/s.
+        Modes that vibrate, ascending by frequency; exponents in 1/s. Overdamped and rigid motions are
+        left out.
     """
     rows, size = linear.rows, linear.size
     stiffness = linear.stiffness + rows.T @ springs @ rows
@@ -177,7 +182,9 @@ def wave_parts(
 
 
 def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
-    """Return the indices of a gear's elastic coordinates by number of nodal diameters."""
+    """Return the indices of a gear's elastic coordinates in the model by number of nodal diameters;
+    `gear` is the gear's name in labels such as `upper face gear:n2 1c`.
+    """
     members: dict[int, list[int]] = {}
     for number, label in enumerate(linear.labels):
         owner, _, letter = label.rpartition(":")
@@ -187,10 +194,13 @@ def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
 
 
 def _forward(linear: LinearModel, shapes: ComplexArray, members: list[int], sign: float) -> Array:
-    """Return the part of each shape's squared amplitude that lies in the wave turning with the gear.
+    """Return the fraction (m,) of each shape's squared amplitude that lies in the wave turning with the
+    gear.
 
-    With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
-    the other |a - i b| / 2. `sign`: sense in which the gear turns.
+    shapes (n, m); members: coordinates of one gear with one number of nodal diameters; sign: sense in
+    which the gear turns, 1 towards growing angles. With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)]
+    the wave towards growing angles has |a + i b| / 2, the other |a - i b| / 2. It is 0.5 for no nodal
+    diameters.
     """
     cosine = [number for number in members if linear.labels[number].endswith("c")]
     sine = [number for number in members if linear.labels[number].endswith("s")]
@@ -256,17 +266,20 @@ def campbell_table(
 def join_lines(linear: LinearModel, shapes: Sequence[ComplexArray]) -> list[Integers]:
     """Return the numbers of the lines that the modes of every speed belong to.
 
+    Modes at neighbouring speeds are assigned to each other with the largest sum of MAC; pairs below
+    MIN_MAC are not joined, and an unjoined mode begins a new line.
+
     Parameters
     ----------
     linear : LinearModel
         Linear model of the machine.
     shapes : sequence of (n, m) complex arrays
-        Mode shapes at each speed.
+        Mode shapes at each speed, in the order of the speeds.
 
     Returns
     -------
     list of (m,) arrays of int
-        Index of each line, from 1, at each speed.
+        For each speed the line of each mode, as an index from 1.
     """
     lines = [np.arange(1, shapes[0].shape[1] + 1)]
     last = int(lines[0].size)

@@ -86,8 +86,10 @@ class FlankContacts:
 
 @dataclass(frozen=True, eq=False)
 class TableError:
-    """Largest and rms difference of a table from contact solutions between its levels, over `force`, the
-    mean force (N) at its last level.
+    """Difference between a force table and contact solutions up to its last level.
+
+    rms, largest: root mean square and largest size over `force`, dimensionless; force: mean force at the
+    table's last level, N.
     """
 
     rms: float
@@ -96,17 +98,20 @@ class TableError:
 
     @property
     def percent(self) -> tuple[float, float]:
-        """Root mean square and largest error, percent."""
+        """Root mean square and largest error, in percent of `force`."""
         return 100.0 * self.rms, 100.0 * self.largest
 
     @property
     def excess(self) -> float:
-        """Larger of both errors over its goal, dimensionless."""
+        """Larger of rms / RMS and largest / LARGEST, dimensionless: up to 1 both errors meet their aims."""
         return max(self.rms / RMS, self.largest / LARGEST)
 
 
 def law_torques(largest: float) -> list[float]:
     """Return the torques at which contact is solved for a law that reaches the largest at every phase.
+
+    TORQUE_COUNT torques from LIGHTEST to 1 times REACH times the largest; their roots of degree 2
+    EXPONENT are evenly spaced.
 
     Parameters
     ----------
@@ -124,13 +129,16 @@ def law_torques(largest: float) -> list[float]:
 
 
 def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[ForceTable], list[TableError]]:
-    """Fit the tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest
-    error of all.
+    """Fit the tables of flanks with the fewest and evenest levels that meet the aim.
+
+    All flanks get the same number of pieces and crowding. Every second solution is fitted; the others
+    give the errors. If no choice meets the aims RMS and LARGEST, the one with the smallest error is
+    returned. Choices whose force falls somewhere are refused.
 
     Parameters
     ----------
     flanks : Sequence of FlankContacts
-        Contact solutions of the flanks.
+        Contact solutions of the flanks at TORQUE_COUNT forces each.
     orders : int
         Number of harmonics kept, at most as many as the positions give.
 
@@ -142,7 +150,7 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
     Raises
     ------
     FacegearError
-        If the force falls while the deflection grows.
+        If the force falls while the deflection grows, for every choice.
     """
     fit_contacts = [flank.at(range(0, TORQUE_COUNT, 2)) for flank in flanks]
     between = [flank.at(range(1, TORQUE_COUNT, 2)) for flank in flanks]
@@ -336,10 +344,12 @@ def level_table(
 
 
 def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
-    """Return forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
+    """Return forces (N) and slopes (N/m) at levels (n,), m, each (n, p), by least squares at each of p
+    positions.
 
-    At the first level they are those of the cubic between the two lightest contacts, as the force below it
-    follows from them. Unknown slopes are counted in units of the mean slope of a cubic with unit force at its
+    They define the cubics that come nearest to forces and slopes of the contacts there. At the first
+    level they are those of the cubic between the two lightest contacts, as the force below it follows
+    from them. Unknown slopes are counted in units of the mean slope of a cubic with unit force at its
     end, so that all columns of the least squares are of one size.
     """
     count = levels.size
@@ -362,8 +372,10 @@ def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
 
 
 def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
-    """Return values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: with unit force at one
-    level, then with unit slope. Beyond the levels the outer cubics go on.
+    """Return values and slopes (a, 2 n) of the Hermite cubics between levels (n,), m, at amounts (a,), m.
+
+    The first n columns are cubics with unit force at one level, the others with unit slope. Beyond the
+    levels the outer cubics go on.
     """
     at = np.clip(np.searchsorted(levels, amounts, side="right") - 1, 0, levels.size - 2)
     width = levels[at + 1] - levels[at]
@@ -380,7 +392,9 @@ def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
 
 
 def _series(values: Array, orders: int) -> Array:
-    """Return the Fourier series (rows, 2, orders + 1) of samples (rows, p)."""
+    """Return the Fourier series (rows, 2, orders + 1), sine part first, of samples (rows, p) over even
+    phases, cut after `orders`; in the unit of the samples.
+    """
     terms = np.fft.rfft(values, axis=1)[:, : orders + 1] / values.shape[1]
     terms[:, 1:] *= 2.0
     return np.stack([-terms.imag, terms.real], axis=1)

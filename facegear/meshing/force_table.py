@@ -1,6 +1,6 @@
-"""Forces and slopes of one contact over the amount pressed in, with Fourier series over the phase.
+"""Forces and slopes of one contact over its compression, with Fourier series over the phase.
 
-Between two levels of the amount the force is the cubic that has force and slope of the table at both
+Between two levels of the compression the force is the cubic that has force and slope of the table at both
 (Hermite), at every phase; so are its coefficients Fourier series. Beyond the last level it goes on straight.
 """
 
@@ -18,7 +18,7 @@ LOOKS = 8
 
 @dataclass(frozen=True, eq=False)
 class ForceTable:
-    """Forces and slopes of one contact at L levels of the amount pressed in.
+    """Forces and slopes of one contact at L levels of its compression.
 
     levels (L,) in m, rising from 0; forces (L, 2, harmonics + 1) in N and slopes of the same shape in N/m:
     Fourier series in the phase, sine part first. Forces are zero at the first level. Raises ValueError for
@@ -40,24 +40,31 @@ class ForceTable:
 
     @cached_property
     def coefficients(self) -> Array:
-        """Coefficients of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2,
-        harmonics + 1).
+        """Coefficients (L, 4, 2, harmonics + 1) of the cubics, N/m^k for the power k = 0 to 3, by powers
+        of the compression beyond the level at which each piece begins; beyond the last level the square
+        and cube are 0.
         """
         return hermite(self.levels, self.forces, self.slopes)
 
     @cached_property
     def bounds(self) -> Array:
-        """Series (2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m."""
+        """Series (2 L - 1, 2, harmonics + 1), N/m, between whose extremes all slopes lie; see
+        `slope_bounds`.
+        """
         return slope_bounds(self.levels, self.coefficients)
 
     @cached_property
     def steepest(self) -> float:
-        """Bound of the slope over phase and amount, N/m."""
+        """Upper bound of the slope over phase and compression, N/m: the largest sum of amplitudes among
+        `bounds`.
+        """
         return float(amplitudes(self.bounds).sum(axis=-1).max())
 
     @cached_property
     def min_slope(self) -> float:
-        """Smallest slope at LOOKS phases for each harmonic and as many amounts between two levels, N/m."""
+        """Smallest slope of the force over compression, N/m, sampled at LOOKS phases for each harmonic
+        and at LOOKS + 1 even compressions in each piece.
+        """
         count = LOOKS * self.forces.shape[2]
         values = values_at(self.coefficients[:, 1:], np.arange(count) / count)
         first, second, third = np.moveaxis(values, 2, 0)[:, :, None]
@@ -92,12 +99,12 @@ class ForceTable:
 
 
 def shift_tables(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
-    """Return the tables of contacts that come later by some mesh periods each.
+    """Return the tables of contacts whose force comes later by some mesh periods each: f(phase - lag).
 
     Parameters
     ----------
     tables : Sequence of ForceTable
-        Tables with as many levels and harmonics.
+        One table for each contact, all with as many levels and harmonics.
     cycles : Sequence of float
         Lag of each contact, mesh periods.
 

@@ -12,7 +12,9 @@ from facegear.arrays import Array, Integers
 
 
 class LawAtPhases(Protocol):
-    """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
+    """Law of M contacts at K phases as the compiled statics takes it; classes other than `LinearHeld` and
+    `LoadDependentHeld` only bound the slopes by `stiffness`, (K, M), N/m.
+    """
 
     @property
     def stiffness(self) -> Array:
@@ -22,13 +24,13 @@ class LawAtPhases(Protocol):
 class MeshLaw(Protocol):
     """Elastic forces of M contacts.
 
-    A force depends on the phase in the mesh period and on how far the contact is pressed in beyond its edge;
+    A force depends on the phase in the mesh period and on the compression of the contact beyond its edge;
     it is zero, and begins with slope zero or more, at the edge. Where the two flanks of a mesh share one line
-    of action they are one contact, which is pressed in by a negative amount on its back flank: the law is odd
+    of action they are one contact, with a negative compression on its back flank: the law is odd
     there. The arguments of the methods:
 
     - cycles (K,): mesh periods since the start;
-    - beyond (..., K, M): how far each contact is pressed in, m; forces in N, slopes in N/m.
+    - beyond (..., K, M): compression of each contact, m; forces in N, slopes in N/m.
     """
 
     @property
@@ -37,25 +39,31 @@ class MeshLaw(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Phases from 0 to 1, in mesh periods, between which the law is smooth in the phase; (0,) where it is
-        smooth throughout.
+        """Phases from 0 to 1, in mesh periods, at which the law is not smooth in the phase; (0,) where it
+        is smooth throughout.
         """
 
     @property
     def levels(self) -> Array:
-        """Amounts (L, M) at which the pieces of the law begin, m, rising. The first row is zero, the edge."""
+        """Compressions (L, M), m, at which the pieces of the law begin, rising. The first row is zero,
+        the edge.
+        """
 
     @property
     def straight(self) -> bool:
-        """Whether the force is linear in the amount between two levels."""
+        """Whether the force of a compressed contact is linear in the compression."""
 
     @property
     def steepest(self) -> Array:
-        """Bound (M,) of the slope over phase and amount, N/m."""
+        """Upper bound (M,) of the derivative of the force by the compression, over phase and compression,
+        N/m.
+        """
 
     @property
     def harmonic_fractions(self) -> Array:
-        """Largest fraction (H + 1,) of the slope's bound that each harmonic of the phase makes up."""
+        """Fractions (H + 1,) of the slope's bound by the order of the phase, from the mean on: each is
+        the order's amplitude over `steepest`, the largest of all contacts. A time step is chosen by them.
+        """
 
     def force(self, cycles: Array, beyond: Array) -> Array:
         """Return the forces of the contacts.
@@ -74,7 +82,7 @@ class MeshLaw(Protocol):
         """
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
@@ -86,11 +94,11 @@ class MeshLaw(Protocol):
         Returns
         -------
         (..., K, M) array
-            N/m; zero where nothing is pressed in.
+            N/m; zero where the compression is zero.
         """
 
     def mean(self) -> "MeshLaw":
-        """Return the law averaged over the mesh period at fixed amounts.
+        """Return the law averaged over the mesh period at fixed compressions.
 
         Returns
         -------
@@ -115,8 +123,8 @@ class MeshLaw(Protocol):
     def statics_law(self, cycles: Array) -> LawAtPhases:
         """Evaluate the law at some phases for statics.
 
-        Laws of `facegear.meshing.law` have a kernel. With any other, statics evaluates the forces
-        of the law itself, position by position.
+        `LinearHeld` and `LoadDependentHeld` have a kernel. With any other result, statics evaluates the
+        forces of the law itself, position by position.
 
         Parameters
         ----------
@@ -125,21 +133,25 @@ class MeshLaw(Protocol):
 
         Returns
         -------
-        Held
+        LawAtPhases
             The law at these phases.
         """
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its arrays and numbers by the names that the integrator's function for this law takes."""
+        """Arrays and numbers of the law, by the argument names of its function in
+        `facegear._kernels.motion` (`linear_law`, `load_dependent_law`, `power_law`).
+        """
 
     @property
     def kernel_law(self) -> Any:
-        """The law for the integrator's kernels: one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
+        """The law as an object for the integrator's kernels: one of `Law` in
+        facegear/_kernels/src/motion/laws/all.hpp.
+        """
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:
-    """Return how often contacts are pressed in past the last level of a law.
+    """Return the fraction of positions at which contacts are compressed past the last level of a law.
 
     Parameters
     ----------
@@ -159,7 +171,7 @@ def past_levels(law: MeshLaw, beyond: Array) -> Array:
 
 
 def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
-    """Return how far contacts are pressed in: above `upper`, or below `lower` as a negative amount.
+    """Return the compression of contacts: deflection above `upper`, or negative below `lower`, else 0.
 
     A contact with lower >= upper is never open; both directions count from `upper`.
 
@@ -184,24 +196,25 @@ def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
 
 
 class LinearHeld(NamedTuple):
-    """Stiffness (K, M) in N/m of M contacts at K phases."""
+    """Linear law of M contacts at K phases: stiffness (K, M), N/m."""
 
     stiffness: Array
 
 
 class LoadDependentHeld(NamedTuple):
-    """Load-dependent law of M contacts at K phases.
+    """Load-dependent law of M contacts at K phases, as the compiled statics takes it.
 
     Attributes
     ----------
     stiffness : (K, M)
-        Bounds of the slopes, N/m.
+        Upper bounds of the slopes, N/m.
     cosine, sine : (K, harmonics + 1)
-        Of the multiples of the phases.
+        cos and sin of 2 pi times order times phase.
     table : (kinds, levels, harmonics + 1, 2, 4)
-        Series of the cubics' coefficients, sine part first, by powers of the amount since the level, N and m.
+        Series of the cubics' coefficients, sine part first, by powers of the compression since the level,
+        N and m.
     levels : (kinds, levels)
-        Amounts at which the cubics begin, m.
+        Compressions at which the cubics begin, m.
     kind : (M,)
         Row of the table of each contact.
     """

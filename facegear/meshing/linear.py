@@ -1,4 +1,4 @@
-"""The linear law: a stiffness that depends on the phase, times the amount pressed in."""
+"""The linear law: a stiffness that depends on the phase, times the compression."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,39 +15,40 @@ from facegear.meshing.law import LinearHeld
 
 @dataclass(frozen=True, eq=False)
 class Piecewise:
-    """Stiffness added to the Fourier part: cubic pieces of the phase, in mesh periods since each break.
+    """Periodic function of the phase that is added to the Fourier part of a stiffness, N/m.
 
-    breaks (pieces + 1,) from 0 to 1; coefficients (pieces, degree + 1), ascending powers.
+    breaks (pieces + 1,) rising from 0 to 1, mesh periods; coefficients (pieces, degree + 1): polynomial
+    of each piece in the mesh periods since its break, ascending powers, N/m.
     """
 
     breaks: Array
     coefficients: Array
 
     def __call__(self, cycles: Array) -> Array:
-        """Stiffness (K,) at phases (K,) in [0, 1)."""
+        """Return the added stiffness (K,), N/m, at phases (K,) in [0, 1)."""
         index = np.searchsorted(self.breaks, cycles, side="right") - 1
         powers = np.vander(cycles - self.breaks[index], self.coefficients.shape[1], True)
         return np.asarray((self.coefficients[index] * powers).sum(1))
 
     @property
     def mean(self) -> float:
-        """Mean stiffness over the mesh period."""
+        """Mean of the added stiffness over the mesh period, N/m."""
         widths = np.diff(self.breaks)[:, None] ** np.arange(1, self.coefficients.shape[1] + 1)
         return float((self.coefficients * widths / np.arange(1, widths.shape[1] + 1)).sum())
 
 
 @dataclass(frozen=True, eq=False)
 class LinearLaw:
-    """k(phase) times the amount pressed in, of contacts of a few kinds, which differ in phase or size.
+    """Force k(phase) times compression, of M contacts of a few kinds, each with one stiffness series.
 
     Attributes
     ----------
     fourier : (kinds, 2, harmonics + 1)
-        Series of k, sine part first, N/m.
+        Series of k of each kind, sine part first, N/m.
     kind : (M,)
-        Of each contact.
+        Row of `fourier` that each contact has.
     pieces
-        What is added to the series of each kind, or nothing.
+        Function that is added to the series of each kind, one for each; or none at all.
     """
 
     fourier: Array
@@ -61,14 +62,16 @@ class LinearLaw:
 
     @property
     def breaks(self) -> Array:
-        """Phases at which pieces of the stiffness begin and end."""
+        """Phases in mesh periods, rising from 0 to 1, at which pieces of any kind begin and end; (0,)
+        without pieces.
+        """
         if not self.pieces:
             return np.zeros(0)
         return np.unique(np.concatenate([piece.breaks for piece in self.pieces]))
 
     @cached_property
     def levels(self) -> Array:
-        """Deflections at which the law's pieces begin: the edge of contact alone."""
+        """Compressions (1, M), m, at which the law's pieces begin: the edge of contact, 0, alone."""
         return np.zeros((1, self.contacts))
 
     @property
@@ -83,24 +86,26 @@ class LinearLaw:
 
     @property
     def harmonic_fractions(self) -> Array:
-        """Largest fraction of the bound of k that each harmonic makes up, (H + 1,)."""
+        """Amplitude of each order of k over `steepest`, (H + 1,): the largest of all kinds."""
         bounds = np.maximum(self._bounds, 1e-300)
         return np.asarray((self._amplitudes / bounds[:, None]).max(axis=0))
 
     @property
     def _amplitudes(self) -> Array:
-        """Amplitude of each order of the stiffness series of each kind of contact."""
+        """Amplitude of each order of the stiffness series of each kind, (kinds, harmonics + 1), N/m."""
         return np.hypot(self.fourier[:, 0], self.fourier[:, 1])
 
     @property
     def _bounds(self) -> Array:
-        """Upper bound of the stiffness of each kind of contact."""
+        """Upper bound of the stiffness of each kind, (kinds,), N/m: sum of the amplitudes, plus the
+        largest sum of coefficients of any added pieces.
+        """
         pieces = np.array([np.abs(piece.coefficients).sum() for piece in self.pieces] or [0.0])
         return np.asarray(self._amplitudes.sum(axis=1) + pieces)
 
     @cached_property
     def _constant(self) -> Array | None:
-        """k (M,) where it does not depend on the phase."""
+        """Stiffness k (M,), N/m, where it does not depend on the phase, else None."""
         alone = self.fourier.shape[2] == 1 and not self.pieces
         return self.fourier[self.kind, 1, 0] if alone else None
 
@@ -125,7 +130,7 @@ class LinearLaw:
         return values[:, self.kind]
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Return k times the amounts.
+        """Return k times the compressions.
 
         Parameters
         ----------
@@ -142,7 +147,7 @@ class LinearLaw:
         return beyond * (self.stiffness(cycles) if self._constant is None else self._constant)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return k where a contact is pressed in, 0 elsewhere.
+        """Return k where the compression is not zero, 0 elsewhere.
 
         Parameters
         ----------
@@ -206,7 +211,9 @@ class LinearLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Numbers of the law as the integrator's kernels take them."""
+        """Arguments of `motion.linear_law`: fourier, kind, breaks (rad), and pieces as `_pieces` returns
+        them.
+        """
         return {
             "fourier": np.ascontiguousarray(self.fourier, dtype=float),
             "kind": np.ascontiguousarray(self.kind, np.int64),
@@ -216,7 +223,7 @@ class LinearLaw:
 
     @cached_property
     def kernel_law(self) -> motion.LinearLaw:
-        """The law as the integrator's kernels take it."""
+        """The law as the integrator's kernels take it, made once."""
         return motion.linear_law(**self.numbers)
 
 
@@ -256,7 +263,11 @@ def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
 
 
 def _pieces(law: LinearLaw) -> Array:
-    """Coefficients (pieces, degree + 1, M) of each contact between common breaks, in powers of rad."""
+    """Return the coefficients of the pieces of each contact between the breaks of all kinds.
+
+    The shape is (pieces, degree + 1, M); N/m, in ascending powers of the phase in rad since the piece's
+    break.
+    """
     if not law.pieces:
         return np.zeros((0, 0, law.contacts))
     breaks = law.breaks

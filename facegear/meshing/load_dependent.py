@@ -17,10 +17,11 @@ MAX_PHASE_SETS = 2
 
 
 class PiecewiseCubics:
-    """Cubics of some kinds in pieces, whose coefficients are periodic series of the phase.
+    """Cubics of the compression in pieces, whose coefficients are Fourier series of the mesh phase.
 
-    Levels (kinds, L), at which the pieces begin, and series (kinds, L, 4, 2, harmonics + 1) of the
-    coefficients. Coefficients at the phases that were used last are cached.
+    levels (kinds, L): compressions, m, at which the pieces begin; series (kinds, L, 4, 2, harmonics + 1):
+    their coefficients by powers of the compression since the level, as `hermite` returns them.
+    Coefficients at the MAX_PHASE_SETS sets of phases used last are cached in `cache`.
     """
 
     def __init__(self, levels: Array, series: Array) -> None:
@@ -28,7 +29,7 @@ class PiecewiseCubics:
         self.cache: dict[bytes, _AtPhases] = {}
 
     def at(self, kind: Integers, cycles: Array, beyond: Array, slopes: bool = False) -> Array:
-        """Return values, or slopes, of contacts of some kinds.
+        """Return forces, or their derivatives by the compression, of M contacts.
 
         Parameters
         ----------
@@ -37,9 +38,9 @@ class PiecewiseCubics:
         cycles : (K,) array
             Phases, mesh periods.
         beyond : (..., K, M) array
-            Amounts, m.
+            Compression of the contacts, m; forces are odd in it.
         slopes : bool
-            Whether slopes are returned instead of values.
+            Whether slopes are returned instead of forces.
 
         Returns
         -------
@@ -55,7 +56,9 @@ class PiecewiseCubics:
         return np.moveaxis(values.reshape(contacts.shape), 0, -1)
 
     def _at_phases(self, cycles: Array) -> "_AtPhases":
-        """Return the cubics at mesh phases, from a cache of at most MAX_PHASE_SETS sets."""
+        """Return the coefficients at phases (K,), mesh periods, from a cache of at most MAX_PHASE_SETS
+        sets.
+        """
         phases, cache = cycles.tobytes(), self.cache
         at_phases = cache.get(phases)
         if at_phases is None:
@@ -66,7 +69,12 @@ class PiecewiseCubics:
 
 
 class _AtPhases:
-    """Coefficients (kinds, L, K, 4) at K phases, of each kind down to the deepest piece asked for."""
+    """Coefficients (kinds, L, K, 4) of the cubics at K phases, computed only down to the deepest piece
+    needed.
+
+    levels, series: as in `PiecewiseCubics`; cycles (K,): mesh periods; known_pieces: number of pieces of
+    each kind whose coefficients are computed.
+    """
 
     def __init__(self, levels: Array, series: Array, cycles: Array) -> None:
         angle = 2.0 * np.pi * np.outer(np.arange(series.shape[-1]), cycles)
@@ -75,8 +83,11 @@ class _AtPhases:
         self.known_pieces = [0] * len(levels)
 
     def down_to(self, of_contacts: Sequence[int], amounts: Sequence[float]) -> Array:
-        """Return all coefficients, of which those are known that contacts of these kinds meet up to some
-        amounts.
+        """Return the coefficients (kinds, L, K, 4), after those of all pieces are computed that are
+        needed.
+
+        of_contacts: kind of each contact; amounts: largest compression of each contact, m. Deeper pieces
+        may hold arbitrary numbers.
         """
         for kind, amount in zip(of_contacts, amounts, strict=True):
             pieces = int(np.searchsorted(self.levels[kind], amount, side="right")) if amount > 0.0 else 0
@@ -89,7 +100,11 @@ class _AtPhases:
 
 @dataclass(frozen=True, eq=False)
 class LoadDependentLaw:
-    """Contacts of a few kinds: the table of each kind, all with as many levels and harmonics; kind (M,)."""
+    """Law of M contacts by force tables of a few kinds.
+
+    tables: force table of each kind, all with as many levels and harmonics; kind (M,): index of the table
+    of each contact.
+    """
 
     tables: tuple[ForceTable, ...]
     kind: Integers
@@ -106,7 +121,7 @@ class LoadDependentLaw:
 
     @cached_property
     def levels(self) -> Array:
-        """Amounts (L, M) at which the pieces begin, m."""
+        """Compressions (L, M) at which the pieces begin, m."""
         return self._levels[self.kind].T
 
     @property
@@ -121,28 +136,34 @@ class LoadDependentLaw:
 
     @cached_property
     def harmonic_fractions(self) -> Array:
-        """Largest fraction of the slope's bound that each harmonic makes up, (H + 1,)."""
+        """Amplitude of each order of the slope's bounds over `steepest`, (H + 1,): the largest of all
+        kinds.
+        """
         fractions = self._bound_sizes.max(axis=1) / np.maximum(self._steepest, 1e-300)[:, None]
         return np.asarray(fractions.max(axis=0))
 
     @cached_property
     def _steepest(self) -> Array:
-        """Bounds of the slopes of each kind."""
+        """Upper bound of the slope of each kind, (kinds,), N/m."""
         return np.asarray(self._bound_sizes.sum(axis=-1).max(axis=1))
 
     @cached_property
     def _bound_sizes(self) -> Array:
-        """Amplitudes (kinds, 2 L - 1, harmonics + 1) of the series that bound the slopes."""
+        """Amplitudes (kinds, 2 L - 1, harmonics + 1), N/m, of the series between whose extremes all
+        slopes lie.
+        """
         return amplitudes(slope_bounds(self._levels, self._coefficients))
 
     @cached_property
     def _levels(self) -> Array:
-        """Deflection levels of each kind of contact, m."""
+        """Levels of the compression of each kind, (kinds, L), m."""
         return np.array([table.levels for table in self.tables])
 
     @cached_property
     def _coefficients(self) -> Array:
-        """Coefficients of the cubics between levels, as Fourier series over the phase."""
+        """Coefficients (kinds, L, 4, 2, harmonics + 1) of the cubics as `hermite` returns them, N/m^k for
+        the power k.
+        """
         forces, slopes = (
             np.array([getattr(table, name) for table in self.tables]) for name in ("forces", "slopes")
         )
@@ -166,7 +187,7 @@ class LoadDependentLaw:
         return self._pieces.at(self.kind, cycles, beyond)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
@@ -178,13 +199,13 @@ class LoadDependentLaw:
         Returns
         -------
         (..., K, M) array
-            N/m; zero where nothing is pressed in.
+            N/m; zero where the compression is zero.
         """
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
     def _pieces(self) -> PiecewiseCubics:
-        """Cubics between levels, evaluated at phases."""
+        """Cubics of all kinds, to be evaluated at phases and compressions, made once with their cache."""
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
@@ -199,7 +220,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _mean(self) -> "LoadDependentLaw":
-        """Law of the mean force over the phase."""
+        """Law of the mean forces and slopes over the phase at every level, made once."""
         return self._with_series(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
@@ -226,7 +247,9 @@ class LoadDependentLaw:
         return self._with_series(series, self.kind)
 
     def _with_series(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
-        """Return a law with the same levels and other series of forces and slopes."""
+        """Return a law with the same levels, whose tables have other series of forces and slopes, each
+        (L, 2, orders); kind (M,): table of each contact.
+        """
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(
             tuple(ForceTable(table.levels, *table_series) for table, table_series in tables), kind
@@ -257,23 +280,26 @@ class LoadDependentLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Numbers of the law as the integrator's kernels take them."""
+        """Arguments of `motion.load_dependent_law`: table (`_columns`), levels (kinds, L) in m, kind
+        (M,).
+        """
         kind = np.ascontiguousarray(self.kind, np.int64)
         return {"table": _columns(self), "levels": self._levels, "kind": kind}
 
     @cached_property
     def kernel_law(self) -> motion.LoadDependentLaw:
-        """The law as the integrator's kernels take it."""
+        """The law as the integrator's kernels take it, made once."""
         return motion.load_dependent_law(**self.numbers)
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
-    """Return the law of contacts with a table each.
+    """Return the law of contacts with a table each; every contact is a kind of its own, even where tables
+    are equal.
 
     Parameters
     ----------
     tables : Sequence of ForceTable
-        Table of each contact.
+        Table of each contact, all with as many levels and harmonics.
 
     Returns
     -------
@@ -285,8 +311,8 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
 
 @lru_cache(maxsize=16)
 def _columns(law: LoadDependentLaw) -> Array:
-    """Return coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; they are shared
-    and must not be changed.
+    """Return coefficients (kinds, L, harmonics + 1, 2, 4) of the cubics in the order of axes that
+    compiled functions read; the array is shared and must not be changed.
     """
     return np.ascontiguousarray(np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)))
 
@@ -298,10 +324,11 @@ HALVINGS, NEWTON = 12, 5
 
 
 def soften_table(table: ForceTable, compliance: float) -> ForceTable:
-    """Return a force table with a spring in series.
+    """Return the force table of a contact in series with a spring, over the compression of both together.
 
-    Levels are those of the mean force, each piece divided in PARTS, and the last level is that of the largest
-    force, so that all of the table is inside. Forces and slopes there hold at every phase, but for harmonics
+    At every phase x + compliance F(x) = level is solved for the compression x of the contact. Levels are
+    those of the mean force, each piece divided in PARTS, and the last level is that of the largest force,
+    so that all of the table is inside. Forces and slopes there hold at every phase, but for harmonics
     above the table's own.
 
     Parameters
@@ -351,7 +378,9 @@ def soften_table(table: ForceTable, compliance: float) -> ForceTable:
 
 
 def _series(values: Array, orders: int) -> Array:
-    """Fourier series (A, 2, orders), sine part first, of values (A, K) at evenly spaced phases."""
+    """Return Fourier series (A, 2, orders), sine part first, of values (A, K) at evenly spaced phases,
+    cut to orders 0 to orders - 1; in the unit of the values.
+    """
     spectrum = np.fft.rfft(values, axis=1)[:, :orders] / values.shape[1]
     spectrum[:, 1:] *= 2.0
     return np.stack([-spectrum.imag, spectrum.real], axis=1)

@@ -15,7 +15,9 @@ from facegear.arrays import Array
 
 
 class PowerHeld(NamedTuple):
-    """Bounds of the slopes (K, M), N/m; statics asks the law itself for the rest."""
+    """Bounds of the slopes (K, M), N/m, at K phases; it has no kernel, so statics evaluates the law
+    itself.
+    """
 
     stiffness: Array
 
@@ -69,7 +71,9 @@ class PowerLaw:
 
     @property
     def harmonic_fractions(self) -> Array:
-        """Fractions of the mean and of the first harmonic, (2,)."""
+        """Fractions (2,) of the slope's bound by the mean and by the first harmonic: 1 and depth, over 1
+        + depth.
+        """
         return np.array([1.0, self.depth]) / (1.0 + self.depth)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
@@ -80,7 +84,7 @@ class PowerLaw:
         cycles : Array
             Mesh periods since the start (K,), dimensionless.
         beyond : Array
-            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+            Compressions of the contacts (..., K, M), m; negative on a back flank.
 
         Returns
         -------
@@ -90,14 +94,14 @@ class PowerLaw:
         return np.asarray(self._factor(cycles)[:, None] * np.sign(beyond) * self._shape(np.abs(beyond)))
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Return the derivatives of the forces by the amounts.
+        """Return the derivatives of the forces by the compressions.
 
         Parameters
         ----------
         cycles : Array
             Mesh periods since the start (K,), dimensionless.
         beyond : Array
-            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+            Compressions of the contacts (..., K, M), m; negative on a back flank.
 
         Returns
         -------
@@ -148,7 +152,9 @@ class PowerLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Numbers of the law as the integrator's kernels take them."""
+        """Arguments of `motion.power_law`: factor (1, 2, 2), the series 1 + depth cos, sine part first;
+        size, exponent, level and number of contacts.
+        """
         return {
             "factor": np.array([[[0.0, 0.0], [1.0, self.depth]]]),
             "size": self.size,
@@ -164,21 +170,27 @@ class PowerLaw:
 
     @property
     def _start(self) -> tuple[float, float]:
-        """Coefficients of x^2 and x^3 below the level, over the size."""
+        """Coefficients of x^2 and x^3 of the cubic below the level, for a size of 1, with x in m."""
         n, x = self.exponent, self.level
         return (3.0 - n) * x ** (n - 2.0), (n - 2.0) * x ** (n - 3.0)
 
     def _factor(self, cycles: Array) -> Array:
-        """Return the factor by which the force varies with the mesh phase, in cycles."""
+        """Return the factor 1 + depth cos(2 pi cycles) on the force at mesh periods `cycles`, of the same
+        shape.
+        """
         return np.asarray(1.0 + self.depth * np.cos(2.0 * np.pi * cycles))
 
     def _shape(self, x: Array) -> Array:
-        """Return the force at compressions `x`, m: a power law, cubic below `level`."""
+        """Return the mean force, N, at compressions `x` >= 0, m, of any shape: a power law, cubic below
+        `level`.
+        """
         a, b = self._start
         return self.size * np.where(x < self.level, x**2 * (a + b * x), x**self.exponent)
 
     def _slope(self, x: Array) -> Array:
-        """Return the derivative of the force by the compression, N/m."""
+        """Return the derivative of the mean force by the compression, N/m, at compressions `x` >= 0, m,
+        of any shape.
+        """
         a, b = self._start
         high = self.exponent * np.maximum(x, self.level) ** (self.exponent - 1.0)
         return self.size * np.where(x < self.level, x * (2.0 * a + 3.0 * b * x), high)

@@ -65,7 +65,8 @@ class LoadTable:
         return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:
-        """Return the largest relative change of the curve if the nearest inner torque had not been solved.
+        """Return the largest relative change of the curve if the solved inner torque nearest to `torque`
+        were left out.
 
         Parameters
         ----------
@@ -95,18 +96,20 @@ class LoadTable:
 
 
 def load_table(ltca: pd.DataFrame) -> LoadTable:
-    """Read all positions of the contact table at the torques whose average stiffness is known at every
-    position.
+    """Read stiffness over position and torque from the contact table.
+
+    Torques at which the average stiffness is missing at some position are left out.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table of the contact analysis.
+        Table of the contact analysis with columns torque_n_m, position, k_average_n_per_m,
+        k_local_n_per_m and interference_um, one row for each torque and position.
 
     Returns
     -------
     LoadTable
-        N m and N/m.
+        N m and N/m, torques and positions rising.
 
     Raises
     ------
@@ -133,15 +136,16 @@ ROUNDING_UM = 1e-4
 
 
 def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
-    """Return the Fourier series of the contact table's unloaded_ste_um, and its cut error.
+    """Return the Fourier series of the contact table's unloaded transmission error, and its cut error.
 
-    Positive where the drive flank comes late. The mean is taken off: it turns the pinions, and what it does
-    to the backlash stands in that of the pair as assembled. An error that is constant is exactly zero.
+    Positive where the drive flank comes late. The mean is taken off: it turns the pinions, and what it
+    does to the backlash stands in that of the pair as assembled. An error that is constant is exactly
+    zero.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table of the contact analysis.
+        Table of the contact analysis; columns torque_n_m, position and unloaded_ste_um are read.
     order : int
         Last order of the series.
 
@@ -161,12 +165,13 @@ def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
 
 
 def unloaded_samples(ltca: pd.DataFrame) -> Array:
-    """Return the unloaded transmission error of a contact table at its positions, rising.
+    """Return the unloaded transmission error of a contact table by rising position, from its smallest
+    torque.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table of the contact analysis.
+        Table of the contact analysis; columns torque_n_m, position and unloaded_ste_um are read.
 
     Returns
     -------
@@ -181,7 +186,7 @@ def unloaded_samples(ltca: pd.DataFrame) -> Array:
 
 
 def peak_to_peak(series: Harmonics) -> float:
-    """Return the peak-to-peak value of a series over a period.
+    """Return the range of a series over a period, from 64 evenly spaced points for each order.
 
     Parameters
     ----------

@@ -31,7 +31,8 @@ def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> p
     Returns
     -------
     pd.DataFrame
-        One row an order, N/m; zero errors without a fit.
+        One row an order from 0: HARMONICS_COLUMNS, truncation_error_n_per_m if the series is cut after
+        that order, and sampling_error_n_per_m; both errors are zero without a fit.
     """
     orders = np.arange(series.order + 1)
     zeros = np.zeros(orders.size)
@@ -127,7 +128,9 @@ def load_dependence(table: LoadTable) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row a definition and torque, N/m.
+        One row a definition and torque: definition, torque_n_m, mean_n_per_m, min_n_per_m, max_n_per_m,
+        amplitude_1_n_per_m, amplitude_2_n_per_m, and orders_for_L_percent: orders needed for each error L
+        of LEVELS, missing where no order is enough.
     """
     rows = []
     for definition in ("average", "local"):
@@ -192,11 +195,12 @@ class Stiffness:
     Attributes
     ----------
     curve : DataFrame
-        Stiffness over a pitch.
+        Stiffness over a pitch, see `curve_table`.
     harmonics : DataFrame
-        Orders that are kept.
+        Orders that are kept, see `harmonics_table`, with columns of `with_unloaded_error` and the means
+        of both definitions if it comes from contact.
     spectrum : DataFrame
-        All orders.
+        All orders, see `harmonics_table`.
     summary : str
         One line for the log.
     """
@@ -209,18 +213,19 @@ class Stiffness:
 
 @dataclass(frozen=True, eq=False)
 class ContactCurve:
-    """k(t) at a load of the contact analysis, N/m.
+    """Mesh stiffness k(t) at one load of the contact analysis, N/m.
 
     Attributes
     ----------
     table
         Stiffness over positions and torques that it was taken from.
     samples, fit
-        At the positions solved, and their series, before both are scaled.
+        Stiffness at the positions solved (p,), and its Fourier fit, both before `scale`.
     scale
-        Factor on both that the request asks for.
+        Factor on both that the request asks for: 1, or requested mean over the fit's mean for fem_scaled.
     whole, series
-        Scaled and varied, with all orders and with those kept.
+        Series times `scale`, its variation times the request's factor: with all orders, and with those
+        kept.
     error, error_cut
         Unloaded transmission error of the same orders (m), and what the cut misses of it (m).
     """
@@ -278,7 +283,7 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
 def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
     """Return `curve_from_contact` as tables.
 
-    Beside the harmonics stand the means of both definitions at that load, scaled alike.
+    The table of harmonics also has the means of both definitions at that load, times the same scale.
 
     Parameters
     ----------
@@ -320,12 +325,14 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
 
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
-    """Return the curve of the series that the config gives.
+    """Return the tables of the stiffness series that the config gives, without contact analysis.
+
+    The curve has CURVE_POINTS points and the varied series with all orders.
 
     Parameters
     ----------
     request : StiffnessRequest
-        The series and the orders kept.
+        The series, the factor on its variation and the orders kept.
 
     Returns
     -------
@@ -344,10 +351,12 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
 
 
 def _vary_samples(samples: Array, factor: float) -> Array:
-    """Scale the variation of samples about their mean by a factor."""
+    """Return samples with their deviation from their mean times a factor, of the same shape and unit."""
     return samples + (factor - 1.0) * (samples - samples.mean())
 
 
 def _largest_variation(series: Harmonics) -> float:
-    """Return the factor on the variation at which the smallest value is zero."""
+    """Return the factor on the variation about the mean at which the smallest value of the series becomes
+    zero.
+    """
     return series.mean / (series.mean - series.minimum)

@@ -27,16 +27,16 @@ QUADRANGLE = 3
 
 @dataclass(frozen=True, eq=False)
 class BodyMesh:
-    """Straight-sided quadrilaterals.
+    """Mesh of a section with straight-sided quadrilaterals.
 
     Attributes
     ----------
     nodes : (n, 2)
         r and height, m.
     quads : (e, 4)
-        Corners of each.
+        Nodes at the corners of each quadrilateral, going round.
     in_layer : (e,)
-        Which belong to the layer of teeth.
+        Whether each belongs to the layer of teeth.
     """
 
     nodes: Array
@@ -45,7 +45,7 @@ class BodyMesh:
 
 
 def element_size(section: Section, across: int = ACROSS) -> float:
-    """Return the size of the elements.
+    """Return the size of the elements: the thinnest wall of the section over `across`.
 
     Parameters
     ----------
@@ -106,7 +106,10 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
 
 
 def _surfaces(section: Section) -> tuple[list[int], list[int]]:
-    """Return the surfaces of the body, cut along height 0 below the teeth, and of the layer of teeth."""
+    """Add the section to gmsh, cut along height 0 between the radii of the teeth.
+
+    Returns the tags of the surfaces of the body, and of the layer of teeth (empty without one).
+    """
     solids = [(2, _polygon(section.corners))]
     if section.layer is not None:
         solids.append((2, _polygon(section.layer.corners)))
@@ -120,7 +123,7 @@ def _surfaces(section: Section) -> tuple[list[int], list[int]]:
 
 
 def _polygon(corners: Array) -> int:
-    """Add a polygon of corners (radius, height) to gmsh and return its surface."""
+    """Add a polygon of corners (n, 2), r and height in m, to gmsh and return the tag of its surface."""
     points = [gmsh.model.occ.addPoint(r, height, 0.0) for r, height in corners]
     lines = [
         gmsh.model.occ.addLine(first, last)
@@ -130,7 +133,10 @@ def _polygon(corners: Array) -> int:
 
 
 def _sizes(section: Section, size: float, finer: float) -> None:
-    """Set the sizes before each element is cut into four."""
+    """Set gmsh's element sizes: twice `size` (m), and smaller by the factor `finer` at reentrant corners.
+
+    They are twice as large as wanted, because each element is then divided into four.
+    """
     for name in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{name}", 0)
     gmsh.option.setNumber("Mesh.MeshSizeMax", 2.0 * size)
@@ -175,7 +181,9 @@ def reentrant(corners: Array) -> Array:
 
 
 def _quads(surface: int) -> Integers:
-    """Return the nodes of the nine-node quadrilaterals of a surface; refuse other elements."""
+    """Return gmsh's node tags (e, 4) of the quadrilaterals of a surface with a given tag; raise
+    InvalidInput if it has other elements.
+    """
     types, _, nodes = gmsh.model.mesh.getElements(2, surface)
     if list(types) != [QUADRANGLE]:
         raise InvalidInput("corners of the section", "no mesh of quadrilaterals", "a simpler section")

@@ -73,9 +73,11 @@ def body_table(
 
 
 def _left_out(residual: Array, drive: Array, back: Array, angles: Array) -> float:
-    """Return the largest influence (m/N) between flanks of two meshes by compliances (orders, 2, 2).
+    """Return the largest influence (m/N, magnitude) between flanks of two different meshes by given
+    compliances.
 
-    drive, back (2,): directions of a force on either flank; angles (n,) of the meshes, rad.
+    residual (orders, 2, 2), m/N; drive, back (2,): directions of a force on either flank; angles (n,) of
+    the meshes, rad. It is nan for a single mesh.
     """
     apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
     pairs = [(angle, direction) for angle in apart.tolist() for direction in (drive, back)]
@@ -93,9 +95,6 @@ def mode_table(
     damping: tuple[float, float] = (0.0, 0.0),
 ) -> pd.DataFrame:
     """Return frequencies, coefficients and resonant speeds of all modes, hub held.
-
-    Coefficients of a mode of unit modal mass are c (gyroscopic_factor), B (stiffening_factor), the damping
-    ratio and the four Q (COUPLINGS).
 
     Parameters
     ----------
@@ -115,8 +114,11 @@ def mode_table(
     Returns
     -------
     pd.DataFrame
-        One row a mode: frequencies in Hz at rest and of waves in space at the body's speed, and speeds of the
-        pinions (rpm) at which the mesh frequency meets each wave.
+        One row a mode: gear, nodal_diameters, mode (from 1), frequency_hz at rest, round_fraction (of its
+        mass, moving round the axis), gyroscopic_factor c, stiffening_factor B, damping_ratio, the four Q
+        (COUPLINGS), speed_rpm of the pinions, forward_hz and backward_hz of waves in space at that speed,
+        forward_met_rpm and backward_met_rpm, pinion speeds at which the mesh frequency meets each wave,
+        and frequency_change from a coarser mesh. Coefficients are those of unit modal mass.
     """
     parts = []
     for modes, changes in zip(body.orders, body.changes, strict=True):
@@ -193,8 +195,10 @@ def crossing_table(
     Returns
     -------
     pd.DataFrame
-        One row a crossing. phase_factor: how many times the force of one mesh drives the wave where all
-        meshes of the gear carry the same force; their number where all add up, 0 where they cancel.
+        One row a crossing: gear, nodal_diameters, mode, wave (forward, backward or standing), harmonic,
+        speed_rpm of the pinions, frequency_hz and phase_factor: how many times the force of one mesh
+        drives the wave where all meshes of the gear carry the same force; their number where all add up,
+        0 where they cancel.
     """
     rows = []
     for modes in body.orders:
@@ -213,7 +217,8 @@ def crossing_table(
 
 
 def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
-    """Return the motions along the axis and round it below a mesh by unit forces.
+    """Return the static motions along the axis and round it below a mesh by unit forces, order by order,
+    hub held.
 
     Parameters
     ----------
@@ -227,7 +232,8 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row an order, m/N.
+        One row an order: gear, order, axial_m_per_n (axial motion by an axial force), round_m_per_n
+        (tangential by tangential), axial_round_m_per_n (axial by tangential).
     """
     static = body.static(patch)
     return pd.DataFrame(
@@ -244,7 +250,7 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
 def influence_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, sign: float, meshes: dict[str, float]
 ) -> pd.DataFrame:
-    """Return the motion of one flank against its force by a force on another, hub held.
+    """Return the static motion of one flank against its force by a unit force on another, hub held.
 
     Parameters
     ----------
@@ -264,7 +270,9 @@ def influence_table(
     Returns
     -------
     pd.DataFrame
-        One row for two flanks, m/N.
+        One row for two flanks of two meshes or of one mesh: gear, first, first_flank, second,
+        second_flank, compliance_m_per_n; for each two pinions, and each by itself, drive and drive, drive
+        and back, back and drive.
     """
     static = body.static(patch)
     flanks = {name: flank_direction(pressure_angle, name == "back") for name in ("drive", "back")}

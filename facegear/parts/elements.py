@@ -29,20 +29,20 @@ Rows = list[dict[int, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """Shapes of one scalar component at the quadrature points.
+    """Quadratic quadrilaterals and their 9 scalar shapes at the quadrature points.
 
     Attributes
     ----------
     basis
-        Of scikit-fem.
+        Basis of scikit-fem for one scalar component.
     value, by_r, by_height : (9, elements, points)
-        Shapes and their derivatives, 1/m.
+        Shapes, and their derivatives by r and height, 1/m.
     r : (elements, points)
         Distance from the axis, m.
     weight : (elements, points)
         Quadrature weights with the factor r of an axisymmetric body, m3 for each radian.
     dofs : (27, elements)
-        Numbers of the degrees of freedom: U, V, W of each scalar shape.
+        Numbers of the degrees of freedom: U, V, W of each scalar shape in turn.
     """
 
     basis: Basis
@@ -55,7 +55,9 @@ class Elements:
 
     @property
     def size(self) -> int:
-        """Number of degrees of freedom."""
+        """Number of degrees of freedom, those on held edges included: dof 3 s + c is component c of shape
+        s.
+        """
         return 3 * int(self.basis.N)
 
     @property
@@ -65,12 +67,12 @@ class Elements:
 
 
 def elements_of(mesh: BodyMesh) -> Elements:
-    """Return the elements of a mesh.
+    """Return the quadratic elements of a mesh at their quadrature points.
 
     Parameters
     ----------
     mesh : BodyMesh
-        The mesh.
+        Mesh of quadrilaterals; each gets 9 shapes, with nodes at corners, middles of edges and centre.
 
     Returns
     -------
@@ -93,7 +95,10 @@ def elements_of(mesh: BodyMesh) -> Elements:
 
 
 def strains(elements: Elements) -> tuple[Array, Array]:
-    """Return the strains rr, pp, zz, rz, rp, zp of the shapes as A0 + n A1.
+    """Return the strains of the shapes in order n as A0 + n A1.
+
+    The rows are rr, pp (round the axis), zz (along it), and the engineering shears rz, rp, zp. Factors of
+    the wave round the axis are left out.
 
     Parameters
     ----------
@@ -103,7 +108,7 @@ def strains(elements: Elements) -> tuple[Array, Array]:
     Returns
     -------
     pair of (6, 27, elements, points) arrays
-        Operators A0 and A1, 1/m.
+        Operators A0 and A1, 1/m; columns as `Elements.dofs`.
     """
     v, by_r, by_height = elements.value, elements.by_r, elements.by_height
     over_r = v / elements.r
@@ -120,7 +125,9 @@ def strains(elements: Elements) -> tuple[Array, Array]:
 
 
 def gradients(elements: Elements) -> tuple[Array, Array]:
-    """Return the derivatives of (U, V, W) by r, height and round the axis as A0 + n A1.
+    """Return the derivatives of the displacement vector by r, height and round the axis as A0 + n A1.
+
+    The rows are three components by r, three by height, three round the axis.
 
     Parameters
     ----------
@@ -130,7 +137,7 @@ def gradients(elements: Elements) -> tuple[Array, Array]:
     Returns
     -------
     pair of (9, 27, elements, points) arrays
-        Operators A0 and A1, 1/m.
+        Operators A0 and A1, 1/m; columns as `Elements.dofs`.
     """
     over_r = elements.value / elements.r
     plain: Rows = [{part: elements.by_r} for part in (U, V, W)]
@@ -141,7 +148,8 @@ def gradients(elements: Elements) -> tuple[Array, Array]:
 
 
 def displacements(elements: Elements) -> Array:
-    """Return the displacements U, V, W of the shape functions in radial, circumferential and axial direction.
+    """Return the displacements U (radial), V (round the axis) and W (axial) of the shapes at the
+    quadrature points.
 
     Parameters
     ----------
@@ -151,18 +159,20 @@ def displacements(elements: Elements) -> Array:
     Returns
     -------
     (3, 27, elements, points) array
-        m/m.
+        m/m; columns as `Elements.dofs`.
     """
     return operator([{part: elements.value} for part in (U, V, W)])
 
 
 def operator(rows: Rows) -> Array:
-    """Return the rows of an operator on the 27 shapes of each element.
+    """Return the rows of an operator on the 27 shapes of each element: columns U, V, W of shape 0, of
+    shape 1, ...
 
     Parameters
     ----------
     rows : Rows
-        Contribution of each component's scalar shapes to each row.
+        For each row, by number of the component (U, V, W), the factors (9, elements, points) on its
+        scalar shapes; components left out are zero.
 
     Returns
     -------
@@ -210,7 +220,7 @@ def form(elements: Elements, left: Array, tensor: Array, right: Array) -> sp.csr
 
 
 def isotropic(material: Material) -> Array:
-    """Return the elasticity of strains in the order of `strains`.
+    """Return the elasticity matrix, stress by strain, of an isotropic material.
 
     Parameters
     ----------
@@ -220,7 +230,7 @@ def isotropic(material: Material) -> Array:
     Returns
     -------
     (6, 6) array
-        Pa.
+        Pa, rows and columns in the order of `strains`.
     """
     modulus, ratio = material.young_modulus, material.poisson_ratio
     return orthotropic(np.full(3, modulus), ratio, np.full(3, 0.5 * modulus / (1.0 + ratio)))

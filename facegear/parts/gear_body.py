@@ -19,7 +19,8 @@ from facegear.sparse.matrices import Solve
 
 
 def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
-    """Return the means <W>, <V>, <W / r> by unit loads on them, hub held.
+    """Return the means <W>, <V>, <W / r> below the teeth (rows) by unit loads on them (columns), hub
+    held.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def slope_compliance(body: BodyMatrices, solve: Solve) -> Array:
 
 
 def modal_compliance(modes: OrderModes) -> Array:
-    """Return the part of `mean_compliance` that modes hold.
+    """Return the part of `mean_compliance` that modes hold: sum of teeth teeth^T / w^2.
 
     Parameters
     ----------
@@ -188,6 +189,8 @@ class SolvedBody:
     def static(self, patch: Patch) -> Array:
         """Return the static compliances H_n at a mesh by circumferential order, with the hub held.
 
+        H_n maps unit forces along the axis and round it to W_p and V_p of the pitch point.
+
         Parameters
         ----------
         patch : Patch
@@ -196,12 +199,13 @@ class SolvedBody:
         Returns
         -------
         (orders, 2, 2) array
-            m/N.
+            m/N, from order 0 to the last that a load needs.
         """
         return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
 
     def leaning(self, patch: Patch) -> Array:
-        """Return W_p, V_p and slope by a unit moment on the slope, hub held.
+        """Return W_p, V_p and the slope dW/dr at a mesh by a unit moment on the slope, by order, hub
+        held.
 
         Parameters
         ----------
@@ -235,7 +239,9 @@ class SolvedBody:
 
 
 def solve_body(section: Section, max_frequency: float, last_order: int, teeth: int) -> SolvedBody:
-    """Compute modes and static compliances of a body.
+    """Compute modes and static compliances of a body with its hub held.
+
+    Compliances are computed at `sampled_orders` and interpolated between them.
 
     Parameters
     ----------
@@ -244,9 +250,10 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     max_frequency : float
         Highest frequency of the modes, Hz.
     last_order : int
-        Last order of the modes.
+        Last order of the modes, lowered to the last order of the compliances where it is above.
     teeth : int
-        Number of teeth, from which follow the waves that a discrete ring can tell apart.
+        Number of teeth N: compliances go up to order (N - 1) // 2, at most STATIC_ORDERS, as a ring of N
+        teeth cannot tell higher waves apart.
 
     Returns
     -------
@@ -286,7 +293,8 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
 
 
 def sampled_orders(last: int) -> list[int]:
-    """Return the orders at which compliances are computed.
+    """Return the orders at which compliances are computed: all up to SMOOTH, then each about GROWTH times
+    the last.
 
     Parameters
     ----------
@@ -296,7 +304,7 @@ def sampled_orders(last: int) -> list[int]:
     Returns
     -------
     list of int
-        From 0 to `last`.
+        Ascending from 0 to `last`, both included.
     """
     orders = list(range(min(SMOOTH, last) + 1))
     while orders[-1] < last:
@@ -305,7 +313,9 @@ def sampled_orders(last: int) -> list[int]:
 
 
 def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
-    """Return the relative change of the frequencies of each order from a coarser mesh."""
+    """Return the change of each mode's frequency on a coarser mesh (COARSE), relative to `fine`: one
+    array (m,) for each order of `fine`.
+    """
     coarse = body_matrices(section, body_mesh(section, *COARSE))
     changes = []
     for modes in fine:
@@ -321,7 +331,10 @@ def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
 def reduced_body(
     body: SolvedBody, patch: Patch, damping_ratio: float, stiffness_damping: float = 0.0
 ) -> ReducedBody:
-    """Return the modes of a body and its static compliance below a mesh.
+    """Return the modes of a body and its static compliance below a mesh, as a machine uses them.
+
+    All modes of all orders are stacked; motions below the teeth are converted to the pitch point by the
+    patch.
 
     Parameters
     ----------
@@ -364,7 +377,9 @@ def reduced_body(
 
 
 def _blocks(matrices: list[Array]) -> Array:
-    """Arrange matrices along the diagonal of one matrix; matrices without entries take no place."""
+    """Return matrices (m_i, m_i) along the diagonal of one matrix, zero elsewhere; empty matrices take no
+    place.
+    """
     size = sum(len(matrix) for matrix in matrices)
     return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
         size, size

@@ -39,12 +39,17 @@ STRESSES = ((0, 0, 0), (1, 1, 2), (2, 2, 1), (0, 1, 3), (1, 0, 3))
 
 @dataclass(frozen=True, eq=False)
 class Polynomial:
-    """A matrix A0 + n A1 + n^2 A2 of the order n, without the factor of the integral round the axis."""
+    """A matrix A0 + n A1 + n^2 A2 of the order n; `parts` are A0, A1, A2 over all degrees of freedom.
+
+    The parts are integrals over the section for each radian. `at` multiplies by the integral round the
+    axis.
+    """
 
     parts: tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]
 
     def at(self, order: int) -> sp.csr_matrix:
-        """Return the matrix of one circumferential order.
+        """Return the matrix of one circumferential order, with the factor `around` of the integral round
+        the axis.
 
         Parameters
         ----------
@@ -54,7 +59,7 @@ class Polynomial:
         Returns
         -------
         sparse matrix
-            In the unit of the parts.
+            (dofs, dofs), in the unit of the parts.
         """
         constant, linear, square = self.parts
         return around(order) * (constant + order * linear + order**2 * square)
@@ -87,12 +92,16 @@ class BodyMatrices:
 
     @cached_property
     def on_teeth(self) -> tuple[Array, Array, Array]:
-        """Means <W>, <V> and <W / r> (dofs,) along the teeth on height 0, uniform in r."""
+        """Weights (dofs,) whose products with displacements are the means <W>, <V> and <W / r> (1/m)
+        along the teeth on height 0, uniform in r.
+        """
         return teeth_means(self.section, self.elements)
 
     @cached_property
     def slope_on_teeth(self) -> Array:
-        """Slope dW/dr (dofs,) of the straight line that fits W best along the teeth on height 0, 1/m."""
+        """Weights (dofs,), 1/m, whose product with displacements is the slope dW/dr of the straight line
+        that fits W best along the teeth on height 0.
+        """
         inner, outer = self.section.teeth
         middle, width = 0.5 * (inner + outer), outer - inner
         slope = np.zeros(self.elements.size)
@@ -157,7 +166,7 @@ def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
 
 
 def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> Polynomial:
-    """Assemble the stiffness K of every order alone.
+    """Assemble the elastic stiffness K of every order, without mass, rotation and supports.
 
     Parameters
     ----------
@@ -177,7 +186,10 @@ def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> P
 
 
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
-    """Build the matrices of a bilinear form as a polynomial in the circumferential order."""
+    """Assemble the integral of B^T tensor B, B = A0 + n A1, as a polynomial in the order n.
+
+    plain, by_order: A0 and A1, (i, 27, elements, points); tensor (i, i, elements, points or 1).
+    """
     cross_terms = form(elements, plain, tensor, by_order)
     parts = (
         form(elements, plain, tensor, plain),
@@ -188,7 +200,12 @@ def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array
 
 
 def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Array, Array]:
-    """Return elasticity (6, 6, elements, 1), Pa, and density (elements, points), kg/m^3, of every element."""
+    """Return elasticity (6, 6, elements, 1), Pa, and density (elements, points), kg/m^3, of every
+    element.
+
+    Elements of the layer of teeth are orthotropic, with the layer's fractions of the body's moduli and
+    density.
+    """
     body = isotropic(section.material)
     elasticity = np.repeat(body[:, :, None], len(mesh.quads), axis=2)
     density = np.full(elements.r.shape, section.density)
@@ -206,7 +223,7 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
 
 
 def _free(section: Section, elements: Elements) -> Integers:
-    """Return the degrees of freedom of shape functions that are not on a held edge."""
+    """Return the degrees of freedom (f,) of all shapes whose point is not on a held edge of the section."""
     is_held = np.zeros(elements.shape_points.shape[1], bool)
     points = elements.shape_points.T
     for (first, last), is_fixed in zip(section.edges, section.is_edge_held, strict=True):
@@ -225,7 +242,12 @@ def _centrifugal_stresses(
     density: Array,
     free: Integers,
 ) -> Array:
-    """Return the stress tensor (3, 3, elements, points) of r, height and the way round, at 1 rad/s; Pa s2."""
+    """Return the stress tensor (3, 3, elements, points) by the body's own rotation at 1 rad/s; Pa s2.
+
+    Its axes are r, height and round the axis. The displacement is that of order 0 under the load rho r.
+    stiffness: K; elasticity (6, 6, elements, 1), Pa; strain: operator A0 of `strains`; density (elements,
+    points), kg/m3; free (f,): degrees of freedom that are not held.
+    """
     outward = np.zeros(elements.size)
     loads = (elements.value * density * elements.r * elements.weight).sum(axis=2)
     np.add.at(outward, elements.dofs[U::3].ravel(), loads.ravel())
@@ -300,9 +322,10 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
 def along_teeth(
     section: Section, elements: Elements, convert_weights: Callable[[Array, Array], Array]
 ) -> Array:
-    """Return the mean of each shape times a function of r along height 0 between the radii of the teeth.
+    """Return weights of all scalar shapes whose product with shape values is a mean along the teeth.
 
-    Along a straight edge of an element the shapes are the quadratic ones of its two ends and its middle.
+    The mean runs along height 0 between the radii of the teeth. Along a straight edge of an element the
+    shapes are the quadratic ones of its two ends and its middle.
 
     Parameters
     ----------
@@ -311,8 +334,8 @@ def along_teeth(
     elements : Elements
         The elements.
     convert_weights : Callable[[Array, Array], Array]
-        Function that maps the weights of a plain mean (points, edges), and the r of the points, to the
-        weights of this mean.
+        Function that maps the weights of a plain mean (points, edges), and the r (m) of the points, to
+        the weights of this mean.
 
     Returns
     -------

@@ -54,22 +54,28 @@ class OrderModes:
 
     @property
     def gyroscopic_factors(self) -> Array:
-        """c = g / M of each mode, (m,)."""
+        """c = g / M of each mode by itself, (m,), dimensionless: the diagonal of `coriolis`."""
         return np.diagonal(self.coriolis)
 
     @property
     def stiffening_factors(self) -> Array:
-        """B = (S - P) / M of each mode, (m,)."""
+        """B = (S - P) / M of each mode by itself, (m,), dimensionless: B W^2 is added to the squared
+        frequency.
+        """
         return np.diagonal(self.stress - self.centrifugal)
 
     @property
     def torsional(self) -> Array:
-        """Fraction of each mode's mass that moves round the axis, (m,)."""
+        """Fraction (m,) of the sum of squares of each shape's entries that lies in motion round the axis,
+        0 to 1.
+        """
         return (self.shapes[V::3] ** 2).sum(axis=0) / (self.shapes**2).sum(axis=0)
 
 
 def held_solver(body: BodyMatrices, order: int) -> Solve:
-    """Return a function that solves for the displacements of the held body in an order.
+    """Return a function that solves K u = f in an order with the section's held edges fixed.
+
+    K is factorised once.
 
     Parameters
     ----------
@@ -81,12 +87,14 @@ def held_solver(body: BodyMatrices, order: int) -> Solve:
     Returns
     -------
     Solve
-        Function from loads (dofs, ...) to displacements (dofs, ...), SI units.
+        Function from loads (dofs, ...) to displacements (dofs, ...), SI units; displacements of held
+        degrees of freedom are 0.
     """
     free = body.free
     solve = solver(body.stiffness.at(order)[free][:, free])
 
     def displacements(loads: Array) -> Array:
+        """Return displacements (dofs, ...) by loads of the same shape; 0 on held degrees of freedom."""
         result = np.zeros(loads.shape)
         result[free] = solve(loads[free])
         return result
@@ -101,8 +109,11 @@ def order_modes(
     solve: Solve | None = None,
     expected_count: int = FIRST_TRY,
 ) -> OrderModes:
-    """Compute all modes of an order up to a frequency, or where it is infinite the first `expected_count` +
+    """Compute all modes of an order up to a frequency; where it is infinite, the first `expected_count` +
     1.
+
+    Eigenvalues of K - w^2 M by shift and invert at 0. More modes are computed until one lies beyond the
+    frequency.
 
     Parameters
     ----------
@@ -113,9 +124,9 @@ def order_modes(
     max_frequency : float
         Highest frequency, Hz.
     solve : Solve or None
-        Function of `held_solver`, where it was made already.
+        Function of `held_solver` for this order, where it was made already.
     expected_count : int
-        Approximate number of modes.
+        Number of modes expected; the first attempt computes one more.
 
     Returns
     -------
@@ -133,6 +144,7 @@ def order_modes(
     stiffness = body.stiffness.at(order)[free][:, free].tocsr()
 
     def inverse(loads: Array) -> Array:
+        """Return the displacements (f,) of the free degrees of freedom by loads (f,) on them."""
         whole = np.zeros(body.elements.size)
         whole[free] = loads
         return solve(whole)[free]
@@ -156,7 +168,12 @@ def order_modes(
 def _smallest(
     stiffness: sp.csr_matrix, mass: sp.csr_matrix, inverse: Solve, count: int, order: int
 ) -> tuple[Array, Array]:
-    """Return the squares of the smallest angular frequencies and their shapes."""
+    """Return the `count` smallest squared angular frequencies, ascending, (count,), 1/s2, and shapes (f,
+    count) of unit modal mass.
+
+    stiffness, mass (f, f): over the free degrees of freedom; inverse: function that solves the stiffness;
+    order: for the message of NotConverged.
+    """
     operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
     start = np.ones(stiffness.shape[0])
     try:
@@ -170,7 +187,9 @@ def _smallest(
 
 
 def _fix_signs(shapes: Array) -> Array:
-    """Return the shapes with signs such that their largest entry is positive."""
+    """Return the shapes (dofs, m) with signs such that the largest entry by magnitude of each is
+    positive.
+    """
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
@@ -178,7 +197,10 @@ def _fix_signs(shapes: Array) -> Array:
 
 
 def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
-    """Project the body's matrices on the modes of one circumferential order."""
+    """Return the modes of one order with the body's matrices and means projected on them.
+
+    frequencies (m,), Hz; shapes (dofs, m) of unit modal mass.
+    """
     factor = around(order)
     rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
     return OrderModes(
@@ -198,15 +220,17 @@ def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes:
 def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
     """Return the frequencies at which the waves of each mode pass a point in space.
 
-    Forward waves travel as the body turns. Modes of an order are taken one by one, f = sqrt(w^2 + (B + c^2)
-    W^2) / 2 pi, f +- (n + c) W / 2 pi; order 0 has no waves, so both are f.
+    Forward waves travel as the body turns. Modes of an order n are taken one by one: with w the angular
+    frequency at rest, c and B its `gyroscopic_factors` and `stiffening_factors` and W the speed, they are
+    f +- (n + c) W / 2 pi with f = sqrt(w^2 + (B + c^2) W^2) / 2 pi. Order 0 has no waves, so both are f
+    with c = 0.
 
     Parameters
     ----------
     modes : OrderModes
         The m modes of one order.
     speed : float
-        Speed of the body, rad/s.
+        Speed of the body, rad/s; its sign does not matter.
 
     Returns
     -------
@@ -223,7 +247,8 @@ def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
 def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array, Array]:
     """Return the speeds of the body at which a harmonic of the mesh frequency meets each wave.
 
-    k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for W.
+    k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for the
+    speed W; w, B, c and n are those of `wave_frequencies`.
 
     Parameters
     ----------

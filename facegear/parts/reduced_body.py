@@ -35,13 +35,13 @@ class ReducedBody:
     stiffness_damping : ()
         Factor beta of the stiffness in the damping D = beta K of the steel, s, beside the former.
     pitch_height : ()
-        Of the pitch plane over height 0, m.
+        Height of the pitch plane over height 0, m.
     slope : (m,)
         Slope dW/dr of the rim below the teeth, 1/m; of a body without this none.
     leaning : (orders, 3)
         W_p, V_p (1/N) and slope (rad/(N m)) by a unit moment on the slope, with all modes there are.
     mass, moment : ()
-        Of the section, kg, and that times the height of its centre, kg m.
+        Mass of the section, kg, and mass times the height of its centre, kg m.
     """
 
     order: Integers
@@ -69,21 +69,24 @@ class ReducedBody:
 
     @property
     def slopes(self) -> Array:
-        """`slope` of every mode, (m,), 1/m."""
+        """Slope dW/dr of every mode, (m,), 1/m: `slope`, or zeros of that shape for a body without
+        slopes.
+        """
         return np.broadcast_to(self.slope, self.order.shape)
 
     def compliance_with_slope(self, length: float) -> Array:
-        """Return the static compliance of W_p, V_p and `length` times the slope.
+        """Return the static compliance of W_p, V_p and `length` times the slope, by unit loads on these
+        three.
 
         Parameters
         ----------
         length : float
-            Factor on the slope, m.
+            Factor on the slope, m, so that all entries have one unit.
 
         Returns
         -------
         (orders, 3, 3) array
-            m/N.
+            m/N, symmetric.
         """
         whole = np.zeros((len(self.static), 3, 3))
         whole[:, :2, :2] = self.static
@@ -93,7 +96,9 @@ class ReducedBody:
 
     @property
     def modal(self) -> Array:
-        """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
+        """The part of `static` that the modes hold, (orders, 2, 2), m/N: sum over the modes of mesh
+        mesh^T / w^2.
+        """
         compliances = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
         scaled_motions = self.mesh / (2.0 * np.pi * self.frequency)
         np.add.at(compliances, self.order, np.einsum("im,jm->mij", scaled_motions, scaled_motions))
@@ -106,14 +111,14 @@ class ReducedBody:
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
-        """Read the body of a gear from the arrays that `arrays` gave.
+        """Read the body of a gear from the arrays that the method `arrays` returned.
 
         Parameters
         ----------
         arrays : Mapping[str, AnyArray]
-            Arrays (...) by name, SI units.
+            Arrays (...) by the names gear_field, such as upper_frequency, SI units.
         gear : str
-            Name of the gear.
+            Name of the gear, with which the names of the arrays begin.
 
         Returns
         -------
@@ -123,7 +128,7 @@ class ReducedBody:
         return cls(**{entry.name: arrays[f"{gear}_{entry.name}"] for entry in fields(cls)})
 
     def arrays(self, gear: str) -> dict[str, AnyArray]:
-        """Return all fields as arrays.
+        """Return all fields as arrays to be stored.
 
         Parameters
         ----------
@@ -133,12 +138,13 @@ class ReducedBody:
         Returns
         -------
         dict of str to array of any shape (...)
-            SI units.
+            By the names gear_field, SI units.
         """
         return {f"{gear}_{entry.name}": getattr(self, entry.name) for entry in fields(self)}
 
     def residual_of_flanks(self, directions: Array) -> Array:
-        """Return the compliance between flanks of one mesh that the modes leave out.
+        """Return the compliance between flanks of one mesh that the modes leave out, summed over all
+        orders.
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
 
@@ -150,6 +156,6 @@ class ReducedBody:
         Returns
         -------
         (f, f) array
-            m/N.
+            Motion of the first flank along its own direction by a unit force on the second, m/N.
         """
         return np.asarray((directions * np.diagonal(self.residual.sum(axis=0))) @ directions.T)

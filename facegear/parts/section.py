@@ -40,7 +40,8 @@ class Layer:
     taper: float = 0.0
 
     def density_at(self, height: Array) -> Array:
-        """Return the fraction of the body's density at heights.
+        """Return the layer's fraction of the body's density at heights, linear from the roots to the tips
+        by `taper`.
 
         Parameters
         ----------
@@ -61,7 +62,7 @@ class Layer:
 
     @property
     def corners(self) -> Array:
-        """Corners (4, 2), m."""
+        """Corners of the layer, (4, 2): r and height, anticlockwise, m."""
         return rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
 
 
@@ -94,7 +95,7 @@ class Section:
 
     @property
     def edges(self) -> Array:
-        """First and last point of each edge, (n, 2, 2)."""
+        """First and last point of each edge, (n, 2, 2): edge, point, r and height; m."""
         return np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
 
 
@@ -154,7 +155,7 @@ def anticlockwise(corners: Array) -> Array:
 
 
 def _area(corners: Array) -> float:
-    """Return the signed area of a polygon, positive if its corners run counterclockwise."""
+    """Return the signed area (m2) of a polygon of corners (n, 2), m, positive if they run anticlockwise."""
     next_corners = np.roll(corners, -1, axis=0)
     return float(0.5 * np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0]))
 
@@ -183,7 +184,9 @@ def require_simple(corners: Array) -> None:
 
 
 def _folds(ends: Array) -> bool:
-    """Whether two edges after one another lie on one another."""
+    """Whether any edge lies on the edge before it, turned back; ends (n, 2, 2): first and last point of
+    each edge, m.
+    """
     ways = ends[:, 1] - ends[:, 0]
     next_edges = np.roll(ways, -1, axis=0)
     cross = ways[:, 0] * next_edges[:, 1] - ways[:, 1] * next_edges[:, 0]
@@ -218,7 +221,7 @@ def distance_between(first: Array, second: Array) -> float:
 
 
 def _from_edge(point: Array, edge: Array) -> float:
-    """Return the distance of a point from an edge."""
+    """Return the distance (m) of a point (2,) from a straight edge (2, 2) between its ends."""
     way = edge[1] - edge[0]
     fraction = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
     return float(np.linalg.norm(point - edge[0] - fraction * way))
@@ -276,6 +279,9 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
     r, height = np.moveaxis(first + points * (last - first), -1, 0)
 
     def integral(values: Array, degree: int) -> float:
+        """Return the integral over the polygon of a form of a degree, given at the edges' points (points,
+        edges).
+        """
         return float(double @ (0.5 * GAUSS[1] @ values)) / (degree + 2)
 
     mass = 2.0 * np.pi * density * integral(r, 1)
@@ -287,6 +293,8 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
 def section_properties(section: Section) -> tuple[float, float, float, float]:
     """Return mass, moments of inertia and static moment as `mass_properties`, teeth included.
 
+    The layer of teeth counts with its density, which falls linearly from roots to tips by its taper.
+
     Parameters
     ----------
     section : Section
@@ -295,7 +303,8 @@ def section_properties(section: Section) -> tuple[float, float, float, float]:
     Returns
     -------
     tuple of four floats
-        kg, kg m2, kg m2 and kg m.
+        Mass (kg), moments of inertia about the axis and about a diameter at height 0 (kg m2), and mass
+        times the height of its centre (kg m).
     """
     properties = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
@@ -309,7 +318,7 @@ def section_properties(section: Section) -> tuple[float, float, float, float]:
 
 
 def inertia_about(section: Section, height: float) -> float:
-    """Return the moment of inertia about a diameter at a height.
+    """Return the moment of inertia of a section's body about a diameter at a height, teeth included.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Elasticity:
 
 @dataclass(frozen=True)
 class Segment:
-    """A piece of shaft between two steps: length, diameter and bore, m."""
+    """A piece of shaft between two steps: its length, outer diameter and bore diameter, m."""
 
     length: float
     diameter: float
@@ -76,7 +76,7 @@ class Segment:
         return 6.0 * (1.0 + poisson) * squared / below
 
     def torsional_stiffness(self, material: Elasticity) -> float:
-        """Return the torsional stiffness.
+        """Return the torsional stiffness of the segment, G times polar second moment over length.
 
         Parameters
         ----------
@@ -92,7 +92,8 @@ class Segment:
 
 
 def section_flexibility(segment: Segment, material: Elasticity) -> Array:
-    """Return the strains x, y, z, tilt_x, tilt_y of a cross-section for each m of length, by its loads.
+    """Return the strains of a cross-section for each m of length by unit loads: 1 / (kappa G A) for x and
+    y, 1 / (E A) for z, 1 / (E I) for the tilts.
 
     Parameters
     ----------
@@ -104,7 +105,7 @@ def section_flexibility(segment: Segment, material: Elasticity) -> Array:
     Returns
     -------
     (5,) array
-        1/N and 1/(N m2).
+        Order x, y, z, tilt_x, tilt_y; 1/N and 1/(N m2).
     """
     shear = segment.shear_coefficient(material.poisson) * material.shear * segment.area
     bending = material.young * segment.second_moment
@@ -114,8 +115,8 @@ def section_flexibility(segment: Segment, material: Elasticity) -> Array:
 def clamped_compliance(segments: Sequence[Segment], material: Elasticity, at: Array) -> Array:
     """Return the motion at each distance by a load at each, of a shaft clamped at its beginning.
 
-    Virtual work: the integral of the strains of all sections that both distances leave behind, which is a
-    polynomial of second degree between two steps; Simpson's rule is exact.
+    Virtual work: the integral of the strains of all sections between the clamp and the nearer of both
+    distances, which is a polynomial of second degree between two steps; Simpson's rule is exact.
 
     Parameters
     ----------
@@ -129,7 +130,8 @@ def clamped_compliance(segments: Sequence[Segment], material: Elasticity, at: Ar
     Returns
     -------
     (n, n, 5, 5) array
-        m/N, rad/N, m/(N m) and rad/(N m).
+        Entry [i, j, a, b]: motion a at distance i by a unit load b at distance j; m/N, rad/N, m/(N m) and
+        rad/(N m).
     """
     compliance = np.zeros((at.size, at.size, MOTIONS, MOTIONS))
     distances: list[float] = at.tolist()
@@ -154,8 +156,10 @@ LENGTH_ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """A bearing at a distance (m) from the beginning of the shaft, with its stiffness (5, 5) in x, y, z,
-    tilt_x, tilt_y, SI units.
+    """A bearing of a shaft.
+
+    position: distance (m) from the beginning of the shaft; stiffness (5, 5): loads by motions x, y, z,
+    tilt_x, tilt_y of the shaft there, SI units.
     """
 
     position: float
@@ -164,8 +168,12 @@ class Bearing:
 
 @dataclass(frozen=True, eq=False)
 class Shaft:
-    """Segments from the end at the smallest z on, what they are made of, bearings, and where the pinion's
-    middle is, m from the beginning.
+    """A stepped shaft on bearings that carries a pinion.
+
+    - segments: from the end at the smallest z on
+    - material: elasticity of all segments
+    - bearings: at their distances from that end
+    - pinion: distance of the pinion's middle from that end, m
     """
 
     segments: tuple[Segment, ...]
@@ -204,28 +212,32 @@ class CondensedShaft:
 
     @cached_property
     def stiffness(self) -> Array:
-        """Loads by motions (5, 5)."""
+        """Loads (5,) on the shaft by motions of the pinion's middle: the inverse of `compliance`, (5, 5),
+        SI units.
+        """
         return _symmetric(np.linalg.inv(self.compliance))
 
     @cached_property
     def square(self) -> Array:
-        """Forces by displacements x, y, z (3, 3) where no moment acts: of a pinion that does not tilt in the
-        model.
+        """Forces by displacements x, y, z where no moment acts, (3, 3), N/m: the inverse of that block of
+        `compliance`.
+
+        It holds a pinion whose tilts are not coordinates of the model.
         """
         return _symmetric(np.linalg.inv(self.compliance[:3, :3]))
 
     def bearing_loads(self, loads: Array) -> Array:
-        """Return the loads on the bearings by the loads of the pinion on the shaft.
+        """Return the loads of the shaft on its bearings by the loads of the pinion on the shaft.
 
         Parameters
         ----------
         loads : (..., 5) array
-            N and N m.
+            x, y, z, tilt_x, tilt_y at the pinion's middle, N and N m.
 
         Returns
         -------
         (..., bearings, 5) array
-            N and N m.
+            In the same order at each bearing, N and N m.
         """
         return np.einsum("bij,...j->...bi", self.reactions, loads)
 
@@ -260,7 +272,7 @@ def condense_shaft(shaft: Shaft) -> CondensedShaft:
 
 
 def deflections(shaft: Shaft, at: AnyArray) -> Array:
-    """Return the motions of a shaft along its length by the loads of its pinion.
+    """Return the motions of a shaft on its bearings, along its length, by unit loads of its pinion.
 
     Parameters
     ----------
@@ -272,15 +284,19 @@ def deflections(shaft: Shaft, at: AnyArray) -> Array:
     Returns
     -------
     (n, 5, 5) array
-        m/N, rad/N, m/(N m) and rad/(N m).
+        Motions x, y, z, tilt_x, tilt_y (rows) by loads in the same order (columns); m/N, rad/N, m/(N m)
+        and rad/(N m).
     """
     reactions, rigid_motion = _solve_balance(shaft)
     return np.array([_motion_at(shaft, float(position), reactions, rigid_motion) for position in at])
 
 
 def _solve_balance(shaft: Shaft) -> tuple[Array, Array]:
-    """Return the loads on the bearings (bearings, 5, 5) and the rigid motion of the beginning (5, 5) by the
-    pinion's loads.
+    """Return the bearings' loads and the rigid motion of a shaft by unit loads of its pinion.
+
+    The first, (bearings, 5, 5), are loads of the shaft on each bearing (rows) by the pinion's loads
+    (columns). The second, (5, 5), is the rigid motion at the shaft's beginning. One linear system holds
+    the motion of each bearing and the balance of all loads.
     """
     at = _load_positions(shaft)
     compliance = clamped_compliance(shaft.segments, shaft.material, at)
@@ -301,7 +317,10 @@ def _solve_balance(shaft: Shaft) -> tuple[Array, Array]:
 
 
 def _motion_at(shaft: Shaft, position: float, reactions: Array, rigid_motion: Array) -> Array:
-    """Return the motion (5, 5) at a distance from the beginning by the pinion's loads."""
+    """Return the motion (5, 5) at a distance (m) from the beginning by unit loads of the pinion.
+
+    reactions, rigid_motion: as `_solve_balance` returns them.
+    """
     at = np.array([position, *_load_positions(shaft)])
     clamped_motions = clamped_compliance(shaft.segments, shaft.material, at)[0, 1:]
     bending = clamped_motions[0] - np.einsum("jkl,jlm->km", clamped_motions[1:], reactions)
@@ -309,12 +328,12 @@ def _motion_at(shaft: Shaft, position: float, reactions: Array, rigid_motion: Ar
 
 
 def _load_positions(shaft: Shaft) -> Array:
-    """Return the distances from the beginning of pinion and bearings, m."""
+    """Return the distances from the beginning of the pinion, then of all bearings, (1 + bearings,), m."""
     return np.array([shaft.pinion, *(bearing.position for bearing in shaft.bearings)])
 
 
 def _flat(blocks: Array) -> Array:
-    """Arrange blocks (rows, columns, 5, 5) as one matrix."""
+    """Return blocks (rows, columns, 5, 5) as one matrix (5 rows, 5 columns)."""
     rows, columns = blocks.shape[:2]
     return blocks.transpose(0, 2, 1, 3).reshape(MOTIONS * rows, MOTIONS * columns)
 

@@ -37,7 +37,8 @@ SAME_HEIGHT = 1e-9
 
 
 def rim_below(section: Section) -> float:
-    """Compute the mean thickness of a section below its layer of teeth, no more than the face is wide.
+    """Compute the mean thickness along the axis of a section below its layer of teeth, at most the face
+    width.
 
     A rim thicker than that is bent by its teeth no more than a solid one.
 
@@ -81,17 +82,18 @@ DEGREE = 5
 def tooth_energies(
     design: PairDesign, material: Material, rim: float, order: int, sizes: tuple[float, ...] = SIZES
 ) -> Array:
-    """Compute twice the elastic energy of the whole ring of teeth in waves.
+    """Compute twice the elastic energy of the whole ring of teeth and rim in two waves, by one cyclic
+    sector.
 
-    The back of the rim rises along the axis by 1 m at the crest, then by 1 m for each metre from the
-    middle of the teeth outwards.
+    At the back of the rim the motion along the axis is prescribed: in the first wave its amplitude is 1
+    m, in the second 1 m for each metre from the middle of the teeth outwards.
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     material : Material
-        Of the face gear.
+        Material of the face gear.
     rim : float
         Thickness of the rim, m.
     order : int
@@ -121,7 +123,7 @@ def tooth_energies(
 
 
 def assemble_stiffness(mesh: MeshHex2, material: Material) -> sp.csr_matrix:
-    """Assemble the stiffness of a mesh.
+    """Assemble the elastic stiffness of a mesh of 27-node hexahedra.
 
     Dof 3 k + i is the displacement of node k along axis i.
 
@@ -130,7 +132,7 @@ def assemble_stiffness(mesh: MeshHex2, material: Material) -> sp.csr_matrix:
     mesh : MeshHex2
         Mesh with n nodes.
     material : Material
-        Of the elements.
+        Material of the elements.
 
     Returns
     -------
@@ -200,16 +202,17 @@ def cyclic(tooth: FeTooth, numbers: Integers, order: int) -> tuple[Integers, sp.
 
 
 def energies(stiffness: sp.csr_matrix, fixed_dof: Integers, values: Array) -> Array:
-    """Compute twice the energy of motions with prescribed values at some dof, all others free.
+    """Compute u^H K u, twice the energy, of motions u with prescribed values at some dof and no force on
+    all others.
 
     Parameters
     ----------
     stiffness : (n, n) sparse matrix
-        N/m.
+        N/m, real or Hermitian.
     fixed_dof : (f,) array of int
         Numbers of the dof.
     values : (f, k) array
-        Displacements of k motions, m.
+        Displacements, real or complex, of k motions, m.
 
     Returns
     -------
@@ -238,12 +241,15 @@ FIT_TOLERANCE = 1e-8
 
 
 def fitted_teeth(section: Section, design: PairDesign) -> Section:
-    """Return the section whose layer has the stiffness of the teeth; without a layer, as it is.
+    """Return the section with the two fractions `hoop` and `shear` of its layer fitted to the real teeth.
+
+    Both are solved for such that `layer_energies` equal `tooth_energies` in two waves of order ORDER on
+    the section's mean rim.
 
     Parameters
     ----------
     section : Section
-        Section of the face gear.
+        Section of the face gear; returned as it is without a layer.
     design : PairDesign
         Pair of gears.
 
@@ -264,6 +270,9 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
     target_energies = tooth_energies(design, section.material, rim, ORDER)
 
     def ratios(logarithms: Array) -> Array:
+        """Return the logarithms (2,) of energies of layer over teeth, by the logarithms (2,) of `hoop`
+        and `shear`.
+        """
         hoop, shear = np.exp(logarithms)
         return np.log(layer_energies(replace(layer, hoop=hoop, shear=shear), section, rim) / target_energies)
 
@@ -276,14 +285,14 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
 
 
 def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
-    """Compute twice the energy of a layer on a rim in the waves of `tooth_energies`.
+    """Compute twice the energy of a layer on a rim in the two waves of `tooth_energies`, of order ORDER.
 
     Parameters
     ----------
     layer : Layer
         Layer of teeth.
     section : Section
-        Section of the face gear.
+        Section of the face gear, for its material.
     rim : float
         Thickness of the rim, m.
 
@@ -305,7 +314,8 @@ def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
 
 
 def strip(layer: Layer, rim: float) -> BodyMesh:
-    """Return layer and rim as rows of rectangles.
+    """Return the mesh of a rectangular rim with the layer on it, with the numbers of elements in
+    ELEMENTS.
 
     Parameters
     ----------

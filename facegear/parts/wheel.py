@@ -93,7 +93,7 @@ def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
 
 
 def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return lower and upper height of the web at the hub, and at the rim.
+    """Return lower and upper height of the web where it ends at the hub, and where it ends at the rim.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[f
     Returns
     -------
     pair of pairs of float
-        m.
+        (lower, upper) at the hub's outer radius, then at the rim's inner radius, m.
     """
     middle = web.offset - web.slope * (rim.inner_radius - hub.outer_radius)
     at_hub = (middle - 0.5 * web.hub_thickness, middle + 0.5 * web.hub_thickness)
@@ -116,7 +116,8 @@ def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[f
 
 
 def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
-    """Raise InvalidInput unless the hub lies inside the rim and the web ends on both.
+    """Raise InvalidInput unless bore, hub and rim follow each other outwards and the web ends within the
+    faces of both hub and rim.
 
     Parameters
     ----------
@@ -188,7 +189,9 @@ class Patch:
     half_width: float
 
     def factor(self, order: int) -> float:
-        """Return c_n: the part of a wave of order n that the patch feels.
+        """Return c_n: the mean of a wave of order n over the patch, weighted by the raised cosine.
+
+        With a = n half_width it is sin(a) / a / (1 - (a / pi)^2), and 1/2 at a = pi.
 
         Parameters
         ----------
@@ -198,7 +201,7 @@ class Patch:
         Returns
         -------
         float
-            Dimensionless, a factor.
+            Dimensionless, a factor; 1 for order 0.
         """
         angle = order * self.half_width
         if abs(angle - np.pi) < 1e-6:
@@ -206,8 +209,8 @@ class Patch:
         return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
-        """Return the axial and circumferential displacement at a mesh from the means of the rim below the
-        teeth.
+        """Return W_p and V_p at a mesh from the means below the teeth: c_n <W> and c_n (<V> + n height <W
+        / r>).
 
         Parameters
         ----------
@@ -219,7 +222,7 @@ class Patch:
         Returns
         -------
         (2, ...) array
-            m.
+            Axial and circumferential displacement of the pitch point, m.
         """
         lever = order * self.height
         return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
@@ -243,7 +246,7 @@ class Patch:
         return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
 
     def compliance(self, order: int, below: Array) -> Array:
-        """Return H_n: motions W_p and V_p by unit loads on them.
+        """Return H_n: W_p and V_p at a mesh (rows) by unit forces along the axis and round it (columns).
 
         Parameters
         ----------

@@ -21,15 +21,16 @@ from facegear.teeth.unloaded_contact import unloaded_contact
 
 @dataclass(frozen=True)
 class Pose:
-    """Pose of a pinion against its gear, and how far both have turned.
+    """Pose of a pinion against its gear in the mesh frame, and how far both have turned.
 
     Attributes
     ----------
     errors
-        Assembly errors.
+        Assembly errors that put the pinion there: offset along x, axial shift along z (m), and the error
+        of the shaft angle (rad).
     outward
-        Shift of the pinion along its axis, away from the gear's axis (m): it moves no normal of the flanks,
-        only the ends of the face and what is taken off along it.
+        Shift of the pinion along its axis, away from the gear's axis (m): it moves no normal of the
+        flanks, only the ends of the face and what is taken off along it.
     ahead
         Turn of the pinion about its axis, ahead as it drives (rad).
     behind
@@ -44,6 +45,9 @@ class Pose:
 
 def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
     """Return the pose of a pinion and a gear that have moved in the mesh frame from their nominal places.
+
+    It is exact: the motion of the pinion relative to the gear is split into a turn of the gear, an
+    offset, an axial shift, a tilt of the pinion's axis, a shift along it and a turn about it.
 
     Parameters
     ----------
@@ -85,6 +89,9 @@ def _about_z(angle: float) -> Array:
 
 def to_mesh_frame(sign: float) -> Array:
     """Return the matrix from the machine's frame at a pinion to that of its mesh.
+
+    With s = `sign`, the mesh's x, y, z are s x, z and -s y of the machine: along the tangent, outwards
+    along the pinion, and along the gears' axis.
 
     Parameters
     ----------
@@ -185,7 +192,7 @@ class MeshPlace:
     gear
         Upper or lower.
     azimuth
-        Of the pinion, rad.
+        Angle of the pinion about the gears' axis, rad.
     tilt_height
         Height over the pinion's axis, towards the gear, of the point about which the gear tilts, m.
     """
@@ -299,13 +306,21 @@ def displaced_flanks(
 
 
 def _pair_of_flank(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
-    """Return the pair whose drive flank a flank is, by the errors that the drive flank meets."""
+    """Return the pair, with its assembly, whose drive flank is the given flank; `errors` are those that
+    the drive flank meets. It is the mirrored design for the back flank.
+    """
     design_at_pose = replace(design, assembly=errors)
     return design_at_pose if flank == FLANKS[0] else mirror_design(design_at_pose)
 
 
 def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tuple[float, float, float]:
-    """Return transmission error (m) with the turns of both bodies, path (m) and slope (rad) of a flank."""
+    """Return the unloaded contact of a flank of a displaced pair.
+
+    design: of `_pair_of_flank`; flank: from FLANKS; position: place in a pitch, 0 to 1, used only where
+    there is no closed form. Returns the transmission error (m) with the turns of both bodies, positive
+    where the flanks come together; the path (m); and the slope of the normal (rad), nan where the contact
+    was searched.
+    """
     sign = 1.0 if flank == FLANKS[0] else -1.0
     rotation_error = sign * (design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind)
     exact = exact_contact(design)
@@ -319,7 +334,7 @@ def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tup
 def _motions(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
 ) -> tuple[RigidMotion, RigidMotion]:
-    """Return the motions of both bodies in the mesh frame, from where they were assembled."""
+    """Return the motions of pinion and gear in the mesh frame, from where they were assembled, m."""
     pinion_turn, gear_turn = _turns(design, mesh, pinion, gear)
     return in_mesh_frame(body_motion(*pinion_turn), mesh.sign), in_mesh_frame(
         body_motion(*gear_turn), mesh.sign
@@ -329,9 +344,10 @@ def _motions(
 def _turns(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
 ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
-    """Return shift, rotation vector and pivot, (3,) each, of both bodies in the machine's frame there.
+    """Return shift (m), rotation vector (rad) and pivot (m), (3,) each, of pinion and gear.
 
-    A pinion that drives turns against z there, and the lower gear against the gears' z.
+    All are in the machine's frame at the pinion; the gear's displacement is turned into it by the
+    azimuth. A pinion that drives turns against z there, and the lower gear against the gears' z.
     """
     cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
     to_pinion = np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
@@ -345,7 +361,9 @@ def _turns(
 def _first_order(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement, flank: str
 ) -> float:
-    """Return the approach of a flank (m) to first order: along the ideal normal at the pitch point."""
+    """Return the approach of a flank (m) to first order, positive where it closes: the motion of the
+    pinion less that of the gear at the pitch point, along the ideal normal.
+    """
     point = np.array([0.0, mesh.sign * design.pinion_pitch_radius, design.gear_pitch_radius])
     displacements = [
         shift + np.cross(turn, point - pivot) for shift, turn, pivot in _turns(design, mesh, pinion, gear)

@@ -93,7 +93,11 @@ def operating_pose(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """Compute the fixed point under the machine's mean torques, to TOLERANCE.
+    """Compute the pose of a machine under its mean torques, by fixed-point iteration.
+
+    Each step solves the equilibrium with mean stiffness and no e(t), then sets stiffness factors,
+    closures and directions of the flanks by the poses found, until no mesh force changes by more than
+    TOLERANCE of the largest.
 
     Parameters
     ----------
@@ -189,7 +193,9 @@ def pose_at(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """Return the machine with the poses of an equilibrium, one step of `operating_pose`.
+    """Return the machine with the poses of a given equilibrium, one step of `operating_pose`.
+
+    Its forces, poses and torques are those of the equilibrium, which is not solved again.
 
     Parameters
     ----------
@@ -198,7 +204,7 @@ def pose_at(
     surface : PoseSurface
         Contact over the pose.
     at_rest : Equilibria
-        Equilibrium of a machine of `with_ideal_directions`.
+        Equilibrium of a machine of `with_ideal_directions`; its first position is taken.
     load : float or None
         Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
     ideal : bool
@@ -207,7 +213,7 @@ def pose_at(
     Returns
     -------
     OperatingPose
-        SI units.
+        SI units; `steps` and `change` are 0.
 
     Raises
     ------
@@ -259,7 +265,9 @@ def pose_at(
 
 
 def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
-    """Return the model at rest with the shafts of its pinions, and its displacements (n,)."""
+    """Return the linear model at rest with the shafts of its pinions, and its displacements (n,), m and
+    rad.
+    """
     static_machine, line = static(machine), machine.drive_line
     if line is None or static_machine.drive_line is not None:
         return static_machine.linear, at_rest.displacements[0]
@@ -268,8 +276,10 @@ def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
 
 
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
-    """Return the poses at the displacements, of pinions that stand where their bearings are, in the pair's
-    assembly.
+    """Return the poses of all meshes at displacements (n,), m and rad, of the coordinates of `linear`.
+
+    The shift of the pinions' bearings (`imperfections.position`) and the assembly errors of the surface's
+    pair are added.
     """
     nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
@@ -292,12 +302,13 @@ def _factor(
     back: bool,
     load: float | None,
 ) -> float:
-    """Return the factor on the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the
-    shaft angle (rad).
+    """Return the factor of the pose on the stiffness of a mesh, dimensionless.
 
-    load: torque (N m) at which the stiffnesses are taken, None for its own. Forces that follow the load are
-    all multiplied by the factor, and then lie at another level of their law: it is the factor with which the
-    mesh is pressed in at its load as the surface says.
+    at: torque of the mesh on its pinion (N m), unloaded path (m) and error of the shaft angle (rad);
+    back: whether the back flank carries; load: torque (N m) at which stiffnesses are taken, None for that
+    of the mesh. Forces that follow the load are all multiplied by the factor, and then lie at another
+    level of their law: it is found by iteration as the factor with which the mesh is compressed at its
+    load as the surface says.
     """
     torque = at[0] if load is None else load
     stiffness = surface.at(STIFFNESS, torque, *at[1:])
@@ -315,7 +326,11 @@ def _factor(
 
 
 def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
-    """Return the stiffness of the machine's teeth over that of the surface."""
+    """Return the stiffness of the machine's teeth in a mesh, without pose, over that of the surface.
+
+    It is the mesh's stiffness factor, times mean stiffness over the surface's reference where there are
+    no force tables.
+    """
     mesh_factor = float(machine.imperfections.stiffness[mesh])
     return (
         mesh_factor
@@ -325,8 +340,11 @@ def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
 
 
 def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
-    """Return the machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2
-    meshes,).
+    """Return the machine with a factor (meshes,) on the stiffness of each mesh, and flanks closed by
+    `closure` (2 meshes,), m, drive flanks first.
+
+    What closes both flanks alike is taken off the half backlash, half the difference off the mesh's
+    error.
     """
     flaws = machine.imperfections
     drive, back = np.split(closure, 2)
@@ -345,16 +363,17 @@ ERROR_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class CarryingPairs:
-    """Different pairs of a machine.
+    """Different tooth pairs of a machine at a pose, so that each is analysed once.
 
     Attributes
     ----------
     designs
-        Each pair, its assembly that of the pose.
+        The pair of each different flank, pose and torque; its drive flank carries, its assembly is that
+        of the pose.
     torques
-        Torque of each on the pinion, N m; 0 where it carries none.
+        Torque of each pair on the pinion, N m; 0 where it carries none.
     numbers : (m,)
-        Index of the pair of the carrying flank of each mesh, of the drive flank where none carries.
+        For each mesh the index of its carrying flank's pair, of its drive flank's where none carries.
     """
 
     designs: list[PairDesign]
@@ -363,7 +382,10 @@ class CarryingPairs:
 
 
 def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
-    """Return the different pairs of a machine at a converged pose.
+    """Return the different tooth pairs of a machine at a converged pose, so that each is analysed once.
+
+    Meshes share a pair if flank, assembly errors (to ERROR_TOLERANCE) and torque (to nine digits) are
+    equal.
 
     Parameters
     ----------

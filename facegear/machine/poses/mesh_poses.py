@@ -22,9 +22,10 @@ PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
 
 @dataclass(frozen=True, eq=False)
 class MeshPoses:
-    """Poses of all meshes, each (..., meshes), m and rad, as the drive flanks of their own gears meet them.
+    """Poses of all meshes, each part (..., meshes), as the drive flanks of their own gears meet them.
 
-    outward: shift of the pinion along its axis, away from the gears'.
+    - offset, axial_shift (m), shaft_angle_error (rad): assembly errors of the pair
+    - outward: shift of the pinion along its axis, away from the gears' axis, m
     """
 
     offset: Array
@@ -154,8 +155,11 @@ def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
 
 
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
-    """Add the lift of the teeth by coordinates of gears that bend, from the flanks' deflections, to
-    `shift`.
+    """Add the lift of the teeth by coordinates of gears that bend to `shift` (meshes, n), in place, m for
+    a unit.
+
+    It is minus the mean of the two flanks' rows, which is their separating part, over sin(pressure
+    angle).
     """
     gears = {gear.name for gear in layout.gears}
     elastic_coordinates = [
@@ -193,15 +197,18 @@ class ForceDirections:
     lever: float = 0.0
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model with these directions."""
+        """Return the model whose flank rows have these directions: `added_flank_rows`, and `lever` times
+        the error of the shaft angle by rims that bend, are added to its rows.
+        """
         leaning = self.lever * leaning_rows(base_model, self.layout)
         added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
         return replace(base_model, rows=base_model.rows + added_rows)
 
     def added_flank_rows(self, model: LinearModel) -> Array:
-        """Return what the directions add to the rows of the ideal contact.
+        """Return what the directions add to the rows of the ideal contact: `slopes` times `pose_rows`.
 
-        A mesh turns no pinion about a diameter: the middle of its face takes the force.
+        A mesh turns no pinion about a diameter, as the middle of its face takes the force: columns of the
+        pinions' tilts are zero.
 
         Parameters
         ----------
@@ -211,7 +218,7 @@ class ForceDirections:
         Returns
         -------
         (2 meshes, n) array
-            m for a unit of each coordinate.
+            m for a unit of each coordinate, drive flanks first.
         """
         parts = pose_rows(model, self.layout, self.mean_radius)
         tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]

@@ -1,7 +1,7 @@
 """Flanks of all meshes at a pose: energy, force, law and reactions.
 
 The energy of a mesh in contact over its pose: force, law and reactions come from one function. Averaged over
-a mesh cycle, a mesh that is pressed in by x with its unloaded contact at y and an error g of the shaft angle
+a mesh cycle, a mesh that is compressed by x with its unloaded contact at y and an error g of the shaft angle
 stores
 
     U(x, y, g) = max over F of [x F - G(F, y, g)],   G(F, y, g) = integral of F' / k(F', y, g) from 0 to F,
@@ -37,20 +37,20 @@ cubic.
 
 @dataclass(frozen=True)
 class MeshEnergy:
-    """A mesh at a force (N), all averaged over the mesh cycle.
+    """Elastic energy of a mesh at a force, averaged over the mesh cycle, with U and G of this module.
 
     Attributes
     ----------
     force
         Along the line of action, N.
     approach
-        x, m.
+        Compression x of the mesh at that force, m.
     energy
-        U, J.
+        Elastic energy U = x F - G, J.
     by_path
-        G_y, J/m.
+        G_y, derivative of the complementary energy G by the unloaded path, at constant force, J/m.
     by_angle
-        G_g, J/rad.
+        G_g, its derivative by the error of the shaft angle, J/rad.
     """
 
     force: float
@@ -60,7 +60,8 @@ class MeshEnergy:
     by_angle: float
 
     def with_stiffness_factor(self, factor: float) -> "MeshEnergy":
-        """Return the energy of teeth that are so many times as stiff, at the same force.
+        """Return the energy of teeth that are `factor` times as stiff, at the same force: all but the
+        force are divided by the factor.
 
         Parameters
         ----------
@@ -77,7 +78,11 @@ class MeshEnergy:
 
 
 def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) -> MeshEnergy:
-    """Return the energy of a mesh under a torque.
+    """Return the energy of a mesh under a torque, with the stiffness of the surface at every smaller
+    torque.
+
+    G = integral of F' / k(F', y, g) from 0 to F, by Gauss's rule between the surface's torques, and in
+    closed form below the smallest of them; k is the average stiffness, y the path, g the angle.
 
     Parameters
     ----------
@@ -86,7 +91,7 @@ def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) 
     torque : float
         Torque on the pinion, N m.
     path : float
-        Unloaded path, m.
+        Place of the unloaded contact along the pinion, m.
     angle : float
         Error of the shaft angle, rad.
 
@@ -113,7 +118,8 @@ def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) 
 
 
 def linear_energy(surface: PoseSurface, load: float, torque: float, path: float, angle: float) -> MeshEnergy:
-    """Return the energy of a mesh whose stiffness does not depend on what it carries.
+    """Return the energy of a mesh whose stiffness k is taken at one torque whatever it carries: U = G =
+    F^2 / (2 k).
 
     Parameters
     ----------
@@ -141,11 +147,11 @@ def linear_energy(surface: PoseSurface, load: float, torque: float, path: float,
 
 
 def _light(last: float, logs: Array, slope: Array) -> Array:
-    """Return G and its derivatives (3,), for a base radius of 1 m, of loads up to the logarithm `last` of a
-    torque.
+    """Integrate T / stiffness over the torque T from 0 to exp(last), where the stiffness is a power of T.
 
-    logs, slope (3,): logarithm of the stiffness there and its derivatives by path and angle, and their slopes
-    over the logarithm of the torque.
+    The result (3,) is the complementary energy G for a base radius of 1 m, J, and its derivatives by
+    path, J/m, and angle, J/rad. logs, slope (3,): logarithm of the stiffness at `last` with its
+    derivatives by path and angle, and the slopes of these three over the logarithm of the torque.
     """
     whole = np.exp(2.0 * last - logs[0]) / (2.0 - slope[0])
     return np.asarray(whole * np.array([1.0, *(slope[1:] / (2.0 - slope[0]) - logs[1:])]))
@@ -210,9 +216,10 @@ def unloaded_contacts(
 def closing_beyond(
     machine: Machine, surface: PoseSurface, poses: MeshPoses, contacts: list[ConjugateContact]
 ) -> Array:
-    """Return the exact transmission error of every flank less the part that its deflection has.
+    """Return by how much the exact unloaded contact closes every flank beyond what its deflection counts.
 
-    Both are counted from the flank as assembled, which closes by nothing where no flanks face each other.
+    It is the change of the exact transmission error from the flank as assembled, less `ideal_slopes`
+    times the change of the assembly errors; 0 where the flanks as assembled do not face each other.
 
     Parameters
     ----------
@@ -228,7 +235,7 @@ def closing_beyond(
     Returns
     -------
     (2 meshes,) array
-        m.
+        m, drive flanks first; positive closes the flank.
     """
     pair, meshes = surface.pair, len(machine.layout.meshes)
     closure = np.zeros(2 * meshes)
@@ -252,6 +259,7 @@ def flank_reactions(
 ) -> Array:
     """Return the derivatives of the energy of every flank by its errors, over its force.
 
+    It is the derivative of the transmission error, less (G_y dy + G_g dg) / F on the flank that carries.
     For a flank that does not carry it is the limit at no force: the normal of the unloaded contact.
 
     Parameters
@@ -285,9 +293,11 @@ def flank_reactions(
 
 
 def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
-    """Return the slopes of the forces of all flanks as `ForceDirections` has them.
+    """Return the slopes of the forces of all flanks as `ForceDirections.slopes`: reactions less
+    `ideal_slopes`.
 
-    A back flank meets an offset as the opposite one.
+    The column of `outward` is zero. A back flank meets an offset as the opposite one, so that its sign
+    changes.
 
     Parameters
     ----------
@@ -301,7 +311,7 @@ def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
     Returns
     -------
     (2 meshes, parts) array
-        m/m and m/rad.
+        m/m and m/rad, columns as PARTS.
     """
     slopes = np.zeros((2 * meshes, len(PARTS)))
     slopes[:, :3] = reactions - ideal_slopes(surface.pair)
@@ -310,7 +320,8 @@ def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
 
 
 def ideal_slopes(pair: PairNumbers) -> Array:
-    """Return the part of an offset, an axial shift and an error of the shaft angle that deflections hold.
+    """Return the deflection of a drive flank for a unit offset, axial shift and error of the shaft angle,
+    to first order, along the normal of the ideal contact.
 
     Parameters
     ----------

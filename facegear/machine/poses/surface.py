@@ -60,7 +60,9 @@ class Nodes:
     torques: Array
 
     def assemblies(self, pair: PairNumbers) -> list[AssemblyErrors]:
-        """Return the assembly errors of all angles and, within each, of all paths, by offsets alone.
+        """Return the assembly errors at which contact is solved: for each angle, all paths.
+
+        The offset alone is chosen such that the unloaded contact lies at the path.
 
         Parameters
         ----------
@@ -70,7 +72,7 @@ class Nodes:
         Returns
         -------
         list of AssemblyErrors
-            Angles times paths entries, m and rad.
+            Angles times paths entries, paths fastest, m and rad.
 
         Raises
         ------
@@ -156,8 +158,8 @@ class PoseSurface:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """Surface as named arrays that `of_arrays` reads again, with the shapes of SURFACE_ARRAYS, in SI
-        units.
+        """Surface as named arrays that `of_arrays` reads again, SI units: those of SURFACE_ARRAYS and all
+        other `values`.
         """
         errors = self.nominal
         return {
@@ -172,12 +174,12 @@ class PoseSurface:
 
     @classmethod
     def of_arrays(cls, arrays: Arrays) -> Self:
-        """Read a surface from what `arrays` gives.
+        """Read a surface from the arrays that the property `arrays` gives.
 
         Parameters
         ----------
         arrays : Arrays
-            Arrays by name.
+            Arrays by name, as SURFACE_ARRAYS; further QUANTITIES are read where they are present.
 
         Returns
         -------
@@ -193,10 +195,10 @@ class PoseSurface:
         )
 
     def at(self, quantity: str, torque: float, path: float, angle: float) -> float:
-        """Return a quantity within the nodes.
+        """Return a quantity within the nodes: splines over path and ln(torque), linear over the angle.
 
-        Below the smallest torque the stiffness goes on as the power of the load that it has there, and all
-        else is what it is at that torque.
+        Below the smallest torque the stiffness goes on as the power of the load that it has there, and
+        all else is what it is at that torque.
 
         Parameters
         ----------
@@ -207,7 +209,7 @@ class PoseSurface:
         path : float
             Unloaded path, m.
         angle : float
-            Error of the shaft angle, rad.
+            Error of the shaft angle, rad; outside the nodes the outermost one is taken.
 
         Returns
         -------
@@ -224,14 +226,15 @@ class PoseSurface:
         return value if quantity == RADIUS else float(np.exp(value))
 
     def torque_weights(self, logs: Array | float, order: int = 0) -> Array:
-        """Return the weights of the values at all torques, by splines over the logarithm of the torque.
+        """Return weights w of the node values v such that w . v is the cubic spline of v over the
+        logarithm of the torque.
 
         Parameters
         ----------
         logs : array of any shape (...) or float
             Logarithms of torques in N m, dimensionless.
         order : int
-            0 for the value there, 1 for the slope.
+            0 for the value there, 1 for the slope over the logarithm.
 
         Returns
         -------
@@ -242,13 +245,16 @@ class PoseSurface:
 
     @cached_property
     def reference_stiffness(self) -> float:
-        """Stiffness (N/m) that a machine takes which does not follow the load."""
+        """Average stiffness (N/m) at the nominal assembly and `reference_torque`, which stands for the
+        machine's own stiffness where that does not depend on the load.
+        """
         contact = contact_at(self.pair, self.nominal)
         assert contact is not None
         return self.at(STIFFNESS, self.reference_torque, contact.y, self.nominal.shaft_angle_error)
 
     def stiffness_logs(self, path: float, angle: float) -> Array:
-        """Return the logarithm of the stiffness at all torques, and its derivatives by path and angle.
+        """Return the logarithm of the stiffness at the torques of the nodes, and its derivatives by path
+        and angle.
 
         Parameters
         ----------
@@ -260,7 +266,7 @@ class PoseSurface:
         Returns
         -------
         (3, torques) array
-            Logarithm of N/m, and derivatives in 1/m and 1/rad.
+            Logarithm of N/m, and derivatives in 1/m and 1/rad; the last is 0 with a single angle.
         """
         angles, spline = self.nodes.angles, self._splines[STIFFNESS]
         logs, by_path = spline(path), spline(path, 1)
@@ -302,9 +308,11 @@ class PoseSurface:
                 raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", requirement)
 
     def left_out(self, quantity: str) -> dict[str, Array]:
-        """Return the errors at inner nodes of `path` and `torque` if each had not been solved.
+        """Return the interpolation errors at inner nodes of `path` and `torque` if each node had not been
+        solved.
 
-        They belong to twice the distance of the nodes, and bound the error.
+        The spline through all other nodes is compared with the solved value. These errors belong to twice
+        the distance of the nodes, and bound the error.
 
         Parameters
         ----------
@@ -313,8 +321,10 @@ class PoseSurface:
 
         Returns
         -------
-        dict of str to (angles, paths, torques) array without outer nodes
-            Relative; of the path's radius in m.
+        dict of str to array
+            Keys path and torque; the first axis counts the inner nodes of the key, the others are the
+            remaining two of (angles, paths, torques). Differences of logarithms, so relative; of the
+            path's radius in m.
         """
         logs = self._logs(quantity)
         over = {"path": (1, self.nodes.paths), "torque": (2, np.log(self.nodes.torques))}
@@ -324,19 +334,25 @@ class PoseSurface:
         }
 
     def _logs(self, quantity: str) -> Array:
-        """Return the values that are interpolated: logarithms but for radii."""
+        """Return the node values (angles, paths, torques) that are interpolated: radii as they are, else
+        logarithms.
+        """
         values = self.values[quantity]
         return values if quantity == RADIUS else np.log(values)
 
     @cached_property
     def _torque_spline(self) -> "scipy.interpolate.CubicSpline":
-        """Cubic spline of unit values over the logarithm of the torque."""
+        """Cubic spline over the logarithm of the torque of all unit vectors at once: its values are
+        `torque_weights`.
+        """
         torques = self.nodes.torques
         return scipy.interpolate.CubicSpline(np.log(torques), np.eye(torques.size))
 
     @cached_property
     def _splines(self) -> dict[str, "scipy.interpolate.CubicSpline"]:
-        """Cubic splines of each quantity over the unloaded path."""
+        """Cubic splines of each quantity over the unloaded path, which return (angles, torques); see
+        `_logs`.
+        """
         return {
             name: scipy.interpolate.CubicSpline(self.nodes.paths, self._logs(name), axis=1)
             for name in self.values
@@ -344,7 +360,11 @@ class PoseSurface:
 
 
 def _left_out(coordinates: Array, values: Array) -> Array:
-    """Return the error of splines over all other nodes at each inner one."""
+    """Return spline value less node value at each inner node (inner, ...), the spline being through all
+    others.
+
+    coordinates (n,): rising nodes; values (n, ...): in any unit.
+    """
     errors = []
     for inner in range(1, len(coordinates) - 1):
         fewer = scipy.interpolate.CubicSpline(np.delete(coordinates, inner), np.delete(values, inner, axis=0))

@@ -132,6 +132,9 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
 def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
     """Return the reactions of every mesh on its gear, as REACTIONS names them.
 
+    With the energy's derivatives r by offset, axial shift and error of the shaft angle they are r_offset,
+    -r_shift and -r_angle - mean radius * r_shift.
+
     Parameters
     ----------
     result : OperatingPose
@@ -142,7 +145,7 @@ def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
     Returns
     -------
     (meshes, 3) array
-        N and N m.
+        N, N and N m.
     """
     tangential, shifting, turning = result.reactions.T
     return np.stack([tangential, -shifting, -turning - surface.pair.mean_radius * shifting], axis=1)
@@ -269,7 +272,9 @@ def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, p
 
 
 def _loads(machine: Machine, surface: PoseSurface) -> Iterator[tuple[float, OperatingPose]]:
-    """Yield the poses at FRACTIONS of the load, and last at the largest load that the surface reaches."""
+    """Yield load fraction and pose at FRACTIONS of the load as far as they are found, then, where they
+    end early, at the largest fraction that REACH_HALVINGS halvings of the last step reach.
+    """
     reached_fraction = 0.0
     for fraction in FRACTIONS.tolist():
         result = _at_load(machine, surface, fraction)
@@ -312,7 +317,9 @@ def leaving_text(exits: pd.DataFrame) -> str:
 
 
 def _at_load(machine: Machine, surface: PoseSurface, fraction: float) -> OperatingPose | None:
-    """Return the pose at a fraction of the load, None where it lies beyond the surface or is not found."""
+    """Return the operating pose at a fraction of the mean torques; None where it lies beyond the surface
+    or the iteration does not converge.
+    """
     try:
         return operating_pose(scaled_load(machine, fraction), surface)
     except (InvalidInput, NotConverged):
@@ -327,7 +334,12 @@ def _crossing(
     radius: float,
     between: tuple[float, float],
 ) -> float:
-    """Return the load fraction at which a path crosses a radius, by halving."""
+    """Return the load fraction at which the unloaded path of a mesh crosses a radius (m), by HALVINGS
+    halvings.
+
+    sign: 1 if the path leaves outwards, -1 inwards; between: fractions before and after the crossing, of
+    which the second is returned where the first is 0.
+    """
     low, high = between
     for _ in range(HALVINGS if low > 0.0 else 0):
         middle = 0.5 * (low + high)
@@ -350,12 +362,12 @@ def _flank(force: float) -> str:
 
 
 def hardest_mesh(table: pd.DataFrame) -> int:
-    """Return the loaded mesh whose stiffness its pose changes most.
+    """Return the loaded mesh whose stiffness its pose changes most, in magnitude.
 
     Parameters
     ----------
     table : pd.DataFrame
-        Table of mesh_table().
+        Table of mesh_table(), with the column stiffness_by_pose_percent.
 
     Returns
     -------
