@@ -246,22 +246,23 @@ class DisplacedContact:
     def table(self) -> pd.DataFrame:
         """One row a flank, drive and back: what it meets without load.
 
-        - offset_um, axial_shift_um, shaft_angle_error_deg: errors of assembly that the displacements amount
-          to, those of the config included, as the flank meets them; outward_um: shift of the pinion along its
-          axis, which moves the ends of its face alone.
+        - offset_um, axial_shift_um, shaft_angle_error_deg: errors of assembly that the displacements
+          amount to, those of the config included, as the flank meets them; outward_um: shift of the
+          pinion along its axis, which moves the ends of its face alone.
         - approach_um: how far the flanks have come together along the line of action from as assembled,
-          exactly; deflection_um: its first order, which a lumped mesh counts as its deflection; closing_um:
-          the rest, as in `operating_pose().table()`. A positive approach presses or turns the gear ahead.
+          exactly; deflection_um: its first order, which a lumped mesh counts as its deflection;
+          closing_um: the rest, as in `operating_pose().table()`. A positive approach presses or turns
+          the gear ahead.
         - backlash_um: normal backlash of the displaced pair.
-        - unloaded_path_mm: place of the contact along the pinion's axis; to_inner_end_mm, to_outer_end_mm:
-          its distances from the ends of the face, negative beyond them.
+        - unloaded_path_mm: place of the contact along the pinion's axis; to_inner_end_mm,
+          to_outer_end_mm: its distances from the ends of the face, negative beyond them.
         - pressure_angle_deg: slope of the common normal there; NaN for flanks with modifications or
           deviations and beyond the ends of the face, where the contact is searched.
 
         Returns
         -------
         pd.DataFrame
-            The table.
+            One row for `drive`, one for `back`; column `flank`, then those above.
         """
         return unloaded_table(self.flanks)
 

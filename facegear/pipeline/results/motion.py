@@ -36,7 +36,10 @@ class ResponseResult(Result):
         return self.content["summary"].copy()
 
     def history(self) -> pd.DataFrame:
-        """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods.
+        """Deflection (um) and elastic force (N) of every mesh along the line of action, over at most 32
+        mesh periods.
+
+        Forces are negative on the back flank; mesh_cycle counts mesh periods.
 
         Columns: mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
 
@@ -79,19 +82,19 @@ NO_ITEM = "machine"
 
 
 def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
-    """Return quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
-
-    The names of meshes hold a stroke, `pinion/side`, those of bodies do not.
+    """Arrange the long table of a sweep as arrays over direction, speed_rpm and, by quantity, mesh or
+    body or neither.
 
     Parameters
     ----------
     table : pd.DataFrame
-        Table of a sweep.
+        Table `sweep` of stage dynamics_sweep.
 
     Returns
     -------
     xr.Dataset
-        The quantities with their coordinates.
+        Quantities by name, nan where the table has no row; `class`, `periodic`, `after_irregular` and
+        `symmetry_broken` by direction and speed.
     """
     import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
@@ -121,12 +124,14 @@ def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
 
 
 def _kind(name: str) -> str:
-    """Whether a name is that of a mesh, of a body, or of the machine (no text)."""
+    """Return `mesh` for a name with a stroke, `body` for one without, empty text for the whole machine."""
     return "" if name == NO_ITEM else "mesh" if "/" in name else "body"
 
 
 def _fill_array(rows: pd.DataFrame, column: str, axes: dict[str, list], empty: object) -> "xr.DataArray":
-    """One column over its axes; `empty` where the table has no row."""
+    """Put one column of rows into an array over `axes`, whose values select the place; `empty` where
+    there is no row.
+    """
     import xarray as xr  # as above
 
     values = np.full([len(axis) for axis in axes.values()], empty, dtype=object if empty == "" else float)
@@ -187,7 +192,8 @@ class SweepResult(Result):
         return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
 
     def irregular_ends(self) -> pd.DataFrame:
-        """One row for each abrupt change at which irregular motion begins or ends; columns as of `jumps`.
+        """One row for each abrupt change at which irregular (not periodic) motion begins or ends;
+        columns as of `jumps`.
 
         Where irregular motion ends is a matter of chance: there `error_rpm` is the step of the sweep.
 
@@ -200,7 +206,11 @@ class SweepResult(Result):
         return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
 
     def resonances(self) -> pd.DataFrame:
-        """One row a peak of the RMS without mean, with the mode it belongs to.
+        """One row a peak over speed of the AC RMS (RMS without mean) of a deflection or displacement,
+        with its natural mode.
+
+        resonance_rpm is where `order` times the mesh frequency meets the mode, which has
+        `energy_fraction` of the energy.
 
         Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, resonance, resonance_rpm,
         energy_fraction, mode, order, periodic, after_irregular, symmetry_broken.
@@ -281,9 +291,10 @@ class BranchesResult(Result):
         return self.content["branches"].copy()
 
     def images(self) -> pd.DataFrame:
-        """Return branch and image_of: the branches that are mirror images, and the followed ones they map.
+        """Return which branches are mirror images, under a symmetry of the machine, and of which
+        followed branch.
 
-        Columns, among others: branch, period, points, image_of, tried.
+        Columns: branch, image_of; both are numbers of branches.
 
         Returns
         -------
@@ -307,7 +318,8 @@ class BranchesResult(Result):
         return self.content["special"].copy()
 
     def margins(self) -> pd.DataFrame:
-        """Margin of each stable motion at the nominal speed to its end, in speed and in torque.
+        """Margin of each stable motion at the nominal speed until it ends or loses stability, in speed
+        and in torque.
 
         Columns, among others: branch, parameter, margin.
 
