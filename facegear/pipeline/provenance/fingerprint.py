@@ -39,9 +39,9 @@ _closures: dict[str, Closure] = {}
 def fingerprint(script: str | Path, root: str | Path, functions: Sequence[str] = ()) -> str:
     """Compute the hash of a script and of all code of the packages that it reaches.
 
-    Where the script calls functions that it does not import by name, their own fingerprint follows behind a
-    dot, so that results can be known without the script. A module that the script imports by its name as text
-    is none of its code.
+    Where the script calls functions that it does not import by name, their own fingerprint follows
+    behind a dot, so that results can be known without the script. A module that the script imports by
+    its name as text is none of its code.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def fingerprint(script: str | Path, root: str | Path, functions: Sequence[str] =
     Returns
     -------
     str
-        The hash, with that of the functions behind a dot where there are any.
+        Sixteen hexadecimal digits, and as many for the functions behind a dot where there are any.
     """
     closure = _closure(root)
     code = closure.digest(closure.search(closure.add_script(Path(script))))
@@ -75,7 +75,7 @@ def stage_fingerprint(functions: Sequence[str], root: str | Path) -> str:
     Returns
     -------
     str
-        The hash.
+        Sixteen hexadecimal digits.
     """
     closure = _closure(root)
     return closure.digest(closure.search(closure.find_functions(functions)))

@@ -25,10 +25,8 @@ _known_keys: set[str] = set()
 
 
 def recall(file: Path) -> None:
-    """Take from a file what counts of sources, as `remember` wrote it; other sources are parsed.
-
-    Clones share such a file, as sources are known by their text. A file that cannot be read, or that another
-    version wrote, is passed over.
+    """Fill the memory of parsed sources from a file that `remember` has written, so that these are not
+    parsed again.
 
     Parameters
     ----------
@@ -43,9 +41,8 @@ def recall(file: Path) -> None:
 
 
 def remember(file: Path) -> None:
-    """Write to a file what counts of the sources used last, for the next process, if any was parsed here.
-
-    Where nothing can be written the next process parses again.
+    """Write the parsed sources that were used last to a file, for the next process, if any was parsed
+    in this one.
 
     Parameters
     ----------
@@ -59,7 +56,8 @@ def remember(file: Path) -> None:
 
 
 def source_of(path: Path, module: str) -> Source:
-    """Read statements and imports of a file, without what does not affect its code.
+    """Return statements and imports of a source file, from memory if a file with the same text was
+    parsed before.
 
     Parameters
     ----------
@@ -98,6 +96,6 @@ def _imports(lists: Iterable[Sequence[str]]) -> tuple[tuple[str, str, str], ...]
 
 @cache
 def _version() -> str:
-    """Return Python's version with a digest of the modules that read sources."""
+    """Return a text that changes with Python's version or with the code that parses sources."""
     texts = b"".join(Path(__file__).with_name(name).read_bytes() for name in READERS)
     return f"{sys.version_info[:2]} {hashlib.sha256(texts).hexdigest()}"
