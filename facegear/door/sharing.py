@@ -37,9 +37,10 @@ def load_sharing(self: Case, speed_rpm: float | None = None) -> "LoadSharingResu
 
 
 def hunting(self: Case, positions: int | None = None) -> "HuntingResult":
-    """Compute the load sharing at rest over the hunting cycle, after which the same teeth meet again.
+    """Compute the load sharing at rest over the hunting cycle, in which every tooth meets every other.
 
-    It is a sequence of static equilibria, without damping and inertia.
+    It is a sequence of static equilibria, without damping and inertia. Without errors that turn, one
+    mesh cycle is all.
 
     Parameters
     ----------

@@ -28,6 +28,9 @@ def recall(file: Path) -> None:
     """Fill the memory of parsed sources from a file that `remember` has written, so that these are not
     parsed again.
 
+    Clones share such a file, as sources are known by the hash of their text. A file that cannot be
+    read, or that another version wrote, is passed over.
+
     Parameters
     ----------
     file : Path
@@ -43,6 +46,8 @@ def recall(file: Path) -> None:
 def remember(file: Path) -> None:
     """Write the parsed sources that were used last to a file, for the next process, if any was parsed
     in this one.
+
+    Where nothing can be written the next process parses again.
 
     Parameters
     ----------

@@ -85,6 +85,9 @@ def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
     """Arrange the long table of a sweep as arrays over direction, speed_rpm and, by quantity, mesh or
     body or neither.
 
+    The names of meshes hold a stroke, `pinion/side`, those of bodies do not. They keep the order of the
+    table.
+
     Parameters
     ----------
     table : pd.DataFrame
@@ -294,7 +297,8 @@ class BranchesResult(Result):
         """Return which branches are mirror images, under a symmetry of the machine, and of which
         followed branch.
 
-        Columns: branch, image_of; both are numbers of branches.
+        Columns: branch, image_of; both are numbers of branches. They come from the table of ends, whose
+        columns are, among others: branch, period, points, image_of, tried.
 
         Returns
         -------

@@ -40,6 +40,9 @@ def contact(
     """Solve the loaded tooth contact at every position of a pitch and every torque, on condensed FE
     compliances.
 
+    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks
+    are solved where assembly errors make them differ from it, on the same compliances.
+
     Parameters
     ----------
     pinion : Arrays

@@ -207,7 +207,8 @@ def hunting(
     """Compute the quasi-static load sharing over the hunting cycle, position by position, with statics
     alone.
 
-    The hunting cycle is the number of mesh cycles after which the same teeth meet again.
+    The hunting cycle is the number of mesh cycles until the pattern of errors repeats, 1 where no error
+    turns with a body. Damping and inertia play no part.
 
     Parameters
     ----------

@@ -146,6 +146,9 @@ def tolerances(
     """Compute percentiles, fractions of bad machines, and the importance of causes, from all chunks of
     samples.
 
+    `sampling` tells what the mesh cycles taken from the hunting cycle miss, in the samples that were
+    computed over the whole of it, and what friction misses that is taken at few points of the contact.
+
     Parameters
     ----------
     samples : Sequence[pd.DataFrame]
@@ -232,6 +235,9 @@ COLUMNS = (
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_fields: Any) -> Outcome:
     """Compute percentiles of every quantity at every torque and speed of section `tolerances.load_map`.
+
+    The same machines are used at every load, so that differences between loads are no accident of the
+    samples. The mesh stiffness stays that of mesh_stiffness.torque_n_m.
 
     Parameters
     ----------
