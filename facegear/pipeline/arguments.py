@@ -289,7 +289,8 @@ def gears_met(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        `upper`, or `upper` and `lower`.
+        `upper` without a machine or with one face gear, whatever its name; otherwise `upper` and
+        `lower`.
     """
     machine: Any = case.values["transmission"]
     return ["upper"] if machine is None or len(machine["face_gears"]) == 1 else ["upper", "lower"]
@@ -316,7 +317,7 @@ def sampled_contact(case: Case) -> bool:
 
 
 def lubricated_samples(case: Case) -> dict[str, Any] | None:
-    """Return sections lubrication and tooth_pair where samples of tolerances are lubricated.
+    """Return sections lubrication and tooth_pair, from which samples of tolerances take their friction.
 
     Parameters
     ----------
@@ -335,6 +336,8 @@ def lubricated_samples(case: Case) -> dict[str, Any] | None:
 
 def stored_rubbing(case: Case) -> bool:
     """Whether samples take friction from the stored contact, because they have no contact of their own.
+
+    It needs a section `lubrication`.
 
     Parameters
     ----------

@@ -302,5 +302,6 @@ class DisplacedContact:
             return write_workbook(path, {"unloaded": self.table()})
 
     def __repr__(self) -> str:
+        """Return a line with the approach of each flank, um."""
         approaches = ", ".join(f"{name} {1e6 * flank.approach:.4g} um" for name, flank in self.flanks.items())
         return f"DisplacedContact(approach of flanks: {approaches})"

@@ -60,7 +60,7 @@ def resolved_needs(needs: Needs, case: Case) -> dict[str, Any]:
 
 
 def require_section(name: str | None, values: Values) -> None:
-    """Refuse a config without the section that a stage is about.
+    """Raise ConfigError for a config without the section that a stage is about, such as `search`.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _resolve_need(need: Need, case: Case) -> Any:
 
 
 def value_at(values: Values, key: str) -> Any:
-    """Return the value at a dotted key.
+    """Return the value of a config at a dotted key, such as `dynamics.speed_rpm`.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def _keys_read(case: Case) -> Iterator[str]:
 
 
 def _is_below(key: str, sections: list[str]) -> bool:
-    """Whether a config key lies in one of the sections."""
+    """Whether a dotted config key is one of `sections` or lies inside one."""
     return any(f"{key}.".startswith(f"{section}.") for section in sections)
 
 

@@ -112,12 +112,12 @@ class File:
         Returns
         -------
         str
-            Path below the case's folder.
+            Path below the case's folder, such as `dynamics/chunks/up_0.npz`.
         """
         return self.path.format(**wildcards)
 
     def read(self, path: Path) -> Any:
-        """Read the stored content.
+        """Read the stored content, after a check of its checksum, columns, shapes and finite values.
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ class From:
     when: Callable[[Case], bool] | None = None
 
     def is_needed(self, case: Case) -> bool:
-        """Whether the argument is given.
+        """Whether the argument is given in a case; otherwise the stage's function takes its default.
 
         Parameters
         ----------

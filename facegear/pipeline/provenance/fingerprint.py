@@ -82,7 +82,8 @@ def stage_fingerprint(functions: Sequence[str], root: str | Path) -> str:
 
 
 def reached_functions(functions: Sequence[str], root: str | Path) -> set[str]:
-    """Find the functions, classes and constants that count for some functions.
+    """Find the functions, classes and constants of the packages whose code counts in the fingerprint of
+    some functions.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def reached_functions(functions: Sequence[str], root: str | Path) -> set[str]:
 
 
 def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
-    """Find the modules that are imported where some functions are called.
+    """Find the modules of the packages that are imported when some functions are imported and called.
 
     Parameters
     ----------
@@ -120,7 +121,9 @@ def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
 
 
 def _closure(root: str | Path) -> Closure:
-    """Return the closure of a folder, read anew if one of its files changed."""
+    """Return the search over a folder of packages; it is made anew if one of the files that it has read
+    changed.
+    """
     key = str(root)
     if key not in _closures or not _closures[key].is_current:
         _closures[key] = Closure(key)

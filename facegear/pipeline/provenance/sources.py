@@ -84,7 +84,7 @@ def source_of(path: Path, module: str) -> Source:
 
 
 def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequence[str]]) -> Source:
-    """Build a Source from the lists of its stored form."""
+    """Build a Source from the lists to which `remember` has turned it in JSON."""
     return Source(
         tuple(
             Statement(tuple(names), code, tuple(uses), _imports(inner), runs, signature, tuple(annotated))
@@ -95,7 +95,9 @@ def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequ
 
 
 def _imports(lists: Iterable[Sequence[str]]) -> tuple[tuple[str, str, str], ...]:
-    """Build imports from the lists of their stored form."""
+    """Build imports, tuples of bound name, module and name in it, from the lists that stand for them in
+    JSON.
+    """
     return tuple((bound, module, name) for bound, module, name in lists)
 
 

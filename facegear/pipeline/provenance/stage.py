@@ -69,7 +69,7 @@ class Part:
 
     @property
     def manifest(self) -> Path | None:
-        """Path of the manifest, if the rule writes one."""
+        """Path of the manifest among the outputs; None if the rule writes none."""
         return next(
             (Path(path) for path in _flatten_paths(self.output) if path.endswith(MANIFEST_SUFFIX)), None
         )
@@ -81,7 +81,7 @@ class Part:
 
 
 def _flatten_paths(paths: Paths) -> list[str]:
-    """Return all paths of a job in one list."""
+    """Return all paths in one list; `paths` holds a path or several under each name."""
     path_lists = [[path] if isinstance(path, str) else [*path] for path in paths.values()]
     return [str(path) for path_list in path_lists for path in path_list]
 
@@ -128,7 +128,10 @@ def _ending(end: str, paths: Paths) -> Paths:
 
 @contextmanager
 def stage(snakemake: Any) -> Iterator[StageRun]:
-    """Run the body of a script whose rule has one manifest, which covers all other outputs.
+    """Make a context around the body of a script whose rule has one manifest, which covers all other
+    outputs.
+
+    It joins `job` and `record_part`: lock, log, one-line errors, checked inputs, manifest.
 
     Parameters
     ----------

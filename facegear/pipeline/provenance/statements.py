@@ -109,7 +109,13 @@ def read_source(text: bytes, module: str, is_package: bool) -> Source:
 
 @dataclass(frozen=True)
 class _Scope:
-    """Names of a module: of statements, of imports from the packages and elsewhere, and for type checkers."""
+    """Names of a module, by where they come from.
+
+    - bound: names that its statements bind
+    - package_names: names that imports from the packages bind
+    - foreign: module and attribute of each name that other imports bind
+    - for_checkers: names that are imported for type checkers alone
+    """
 
     bound: set[str]
     package_names: set[str]

@@ -102,6 +102,7 @@ class Result:
         return {name: part for name, part in self.content.items() if isinstance(part, pd.DataFrame)}
 
     def __repr__(self) -> str:
+        """Return class, source and summary in one line."""
         return f"{type(self).__name__}({self.source}: {self.summary})"
 
 

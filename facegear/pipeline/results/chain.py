@@ -102,7 +102,8 @@ class Chain:
         return {**self.upstream_arguments(stage.upstream), **resolved_needs(stage.needs, self.case)}
 
     def upstream_arguments(self, upstream: Mapping[str, From]) -> dict[str, Any]:
-        """Return the arguments that come from earlier stages.
+        """Return the arguments that are files of earlier stages, which are computed if they are not
+        known.
 
         Parameters
         ----------
@@ -112,7 +113,8 @@ class Chain:
         Returns
         -------
         dict[str, Any]
-            Arguments by name.
+            Tables, arrays or records by name of the argument, a list where a source stands for several
+            files; arguments that the case does not need are left out.
         """
         needed_sources = {key: source for key, source in upstream.items() if source.is_needed(self.case)}
         return {key: self._read_source(source) for key, source in needed_sources.items()}
@@ -161,7 +163,9 @@ class Chain:
         )
 
     def _read_source(self, source: From) -> Any:
-        """Return the content of an earlier stage's file, or a list of contents for several cases."""
+        """Return the content of the file of an earlier stage, of another case if its wildcards name
+        one; a list for several files.
+        """
         parts = [
             self._of(wildcards.get("case")).part(source.stage, source.file, _without_case(wildcards))
             for wildcards in source.file_wildcards(self.case)
@@ -228,7 +232,9 @@ def summary_text(chain: Chain) -> str:
 
 
 def _known_tables(chain: Chain) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield the tables of the report that were computed in this session or are stored and current."""
+    """Yield name and content of each table of the report that is known in this session, or stored and
+    up to date.
+    """
     for name, files in REPORT_TABLES.items():
         if not asked_for(name, chain.case):
             continue

@@ -80,12 +80,19 @@ def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
 
 
 class ContactResult(Result):
-    """Transmission error, stiffness, load shares and pressures at every position and torque."""
+    """Loaded contact of one mesh: transmission error, stiffness, load shares and pressures by position
+    and torque.
+    """
 
     STAGE: ClassVar = "contact"
 
     def table(self) -> pd.DataFrame:
         """One row a torque and position; columns in docs/reference/stages.md.
+
+        Torques are on the pinion, position is a fraction of a pitch. ste_um is the transmission error
+        along the line of action, backlash taken up on the drive side. k_average is force / (STE -
+        unloaded STE), k_local d force / d STE. load_share_pair_m1 is the share of the torque of the
+        pair one tooth behind, p1 one ahead. Residuals are relative.
 
         Columns: torque_n_m, position, ste_um, unloaded_ste_um, k_average_n_per_m, k_local_n_per_m,
         pairs_in_contact, load_share_pair_m2, load_share_pair_m1, load_share_pair_0, load_share_pair_p1,
@@ -288,12 +295,13 @@ class MeshLawResult(Result):
         return self.content["levels"].copy()
 
     def arrays(self) -> dict[str, AnyArray]:
-        """Return the Fourier series of force and slope at every level, as `stiffness/law.npz` holds them.
+        """Return the Fourier series over mesh phase of force and slope at every level of deflection, as
+        `stiffness/law.npz` holds them.
 
         Returns
         -------
         dict[str, AnyArray]
-            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables, levels, 2,
-            orders) in N and N/m, table of each flank (2, 2).
+            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables,
+            levels, 2, orders) in N and N/m, table of each flank (2, 2).
         """
         return {name: values.copy() for name, values in self.content["law"].items()}

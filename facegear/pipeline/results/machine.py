@@ -14,7 +14,9 @@ from facegear.report.figures.turning_machine import shaft_order_figure
 
 
 class ModesResult(Result):
-    """Natural frequencies, classes and shapes with the mean mesh stiffness, and the contacts they keep."""
+    """Undamped modes with constant mesh stiffness: frequencies, classes and shapes, and the contacts
+    that are closed in them.
+    """
 
     STAGE: ClassVar = "modal"
 
@@ -178,7 +180,8 @@ class ShaftsResult(Result):
         return self.content["torsion"].copy()
 
     def deflections(self) -> pd.DataFrame:
-        """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load.
+        """Rows along each shaft: distance at_mm from its inner end, displacements x_um (tangential) and
+        y_um under mean load.
 
         Columns: pinion, at_mm, x_um, y_um.
 
@@ -231,7 +234,8 @@ class ShaftOrdersResult(Result):
         return self.content["orders"].copy()
 
     def over_speed(self) -> pd.DataFrame:
-        """One row a speed and one of the largest orders: the mesh with the largest force.
+        """One row a pinion speed and one of the largest orders: the mesh with the largest force,
+        amplitude in N.
 
         Columns: speed_rpm, turning, order, of_mesh, frequency_hz, mesh, force_n.
 
@@ -272,7 +276,9 @@ class ShaftOrdersResult(Result):
 
 
 class OperatingPoseResult(Result):
-    """Pose of every mesh under the machine's mean torques, and what contact makes of it."""
+    """Pose of every mesh under the machine's mean torques, and the contact there beside that as
+    assembled.
+    """
 
     STAGE: ClassVar = "operating_pose"
 
@@ -297,7 +303,8 @@ class OperatingPoseResult(Result):
         return self.content["meshes"].copy()
 
     def loads(self) -> pd.DataFrame:
-        """One row a mesh and fraction of the torques: force, paths, stiffness over the machine's own.
+        """One row a mesh and fraction of the mean torques: force, paths (mm along the pinion),
+        stiffness over the machine's own.
 
         Columns, among others: load_fraction, unloaded_path_mm, mesh, flank.
 
@@ -309,7 +316,8 @@ class OperatingPoseResult(Result):
         return self.content["loads"].copy()
 
     def leaving(self) -> pd.DataFrame:
-        """One row a contact that leaves the face: mesh, fraction of the torques, end of the face, mm.
+        """One row a contact that leaves the face: mesh, fraction of the mean torques at which it does,
+        and the end of the face.
 
         Columns, among others: load_fraction, mesh, end.
 

@@ -24,7 +24,10 @@ class ResponseResult(Result):
     STAGE: ClassVar = "dynamics_response"
 
     def table(self) -> pd.DataFrame:
-        """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class.
+        """Numbers of the steady state, one row a quantity (unit at its end) and body or mesh, as a
+        sweep keeps them.
+
+        `class` is the class of motion; symmetry_broken tells whether it has mirror images.
 
         Columns: speed_rpm, quantity, body_or_mesh, value, class, periodic, symmetry_broken.
 
@@ -335,7 +338,8 @@ class BranchesResult(Result):
         return self.content["margins"].copy()
 
     def ranges(self) -> pd.DataFrame:
-        """Speeds between which several stable motions exist.
+        """Ranges of speed (rpm) in which several stable motions exist, with the numbers of their
+        branches.
 
         Columns, among others: from_rpm, to_rpm, branches.
 
@@ -347,7 +351,8 @@ class BranchesResult(Result):
         return self.content["ranges"].copy()
 
     def coexistence(self) -> pd.DataFrame:
-        """Fraction of random starts that ends on each motion, with its standard error.
+        """Fraction of random starts at a speed that ends on each motion, with its standard error, and
+        the branch of the motion.
 
         Columns, among others: speed_rpm, fraction, error, branch, motion.
 
@@ -416,7 +421,10 @@ class BranchLociResult(Result):
     STAGE: ClassVar = "branches_loci"
 
     def table(self) -> pd.DataFrame:
-        """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp.
+        """One row a point of a curve: locus, kind of point, second parameter, factor on that
+        parameter's value in the config, speed.
+
+        `corner` marks a cusp.
 
         Columns, among others: locus, kind, factor, speed_rpm, corner.
 

@@ -99,7 +99,9 @@ class LoadSharingResult(Result):
 
 
 class HuntingResult(Result):
-    """Load sharing of the machine at rest, tooth by tooth, until every pair of teeth has met."""
+    """Load sharing of the machine at rest, tooth by tooth, until every pair of teeth has met; statics
+    alone.
+    """
 
     STAGE: ClassVar = "hunting"
 
@@ -179,7 +181,9 @@ class HuntingResult(Result):
 
 
 class SensitivityResult(Result):
-    """By how much each error, one at a time, changes the load sharing at rest."""
+    """Change of the load sharing at rest by each error of the machine, one at a time, and by bearing
+    stiffness.
+    """
 
     STAGE: ClassVar = "hunting"
 
@@ -211,7 +215,7 @@ class SensitivityResult(Result):
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """The errors that matter most.
+        """The errors with the largest change of K_gamma per um.
 
         Returns
         -------
@@ -261,7 +265,7 @@ class FollowingResult(Result):
 
 
 def _require_groups(result: Result) -> None:
-    """Refuse to draw where no meshes share a load. Raises FacegearError."""
+    """Raise FacegearError where no meshes of the machine share a load, as there is nothing to draw."""
     if result.content["groups"].empty:
         raise FacegearError(f"{result.values['case']}: no meshes share a load, there is nothing to draw")
 

@@ -291,7 +291,9 @@ class Store:
         return json.dumps([name, part, needs])
 
     def _read_stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
-        """Return the stored output of a stage if it is complete and up to date, else None."""
+        """Return the output of a stage from files below a case's folder; None unless all are there,
+        undamaged and up to date.
+        """
         summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
@@ -302,7 +304,9 @@ class Store:
         return None if content is None else StageOutput(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
-        """Return the manifest of a file if it is up to date, else None."""
+        """Return the manifest of a stored file if its config values, code and inputs are those of now,
+        else None.
+        """
         return current_manifest(
             path,
             lambda rule: stage_needs(rule, values) if rule in STAGES else None,
@@ -311,16 +315,16 @@ class Store:
 
 
 def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path | None:
-    """Return the folder of a case below the results.
+    """Return the first folder `<folder>/<results>/<case>` that exists and may be entered.
 
     Parameters
     ----------
     folders : Iterable[Path]
         Folders in which relative results are looked for.
     results : str or Path
-        Folder of the results.
+        Folder of the results, relative to each of `folders` or absolute.
     case : str
-        Name of the case.
+        Id of the case.
 
     Returns
     -------

@@ -185,11 +185,15 @@ class RatingResult(Result):
         return self.content["rating"].copy()
 
     def safety(self) -> pd.DataFrame:
-        """A row a flank: safety against each failure, life, reliability, verdict.
+        """A row a flank: safety against each failure, life, reliability where a card has it, verdict.
+
+        `standard_*` are by the method of the standard; edge_* are line load and length of contact on
+        tip edges under the largest torque. Scuffing and micropitting stand where flanks are lubricated
+        and loads are the machine's.
 
         Columns: body, flank, verdict, bending_safety, standard_bending_safety, pitting_safety,
-        standard_pitting_safety, edge_line_load_n_per_mm, edge_length_mm, life_hours, nearest_limit, reason,
-        caveat, within_torques_solved, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
+        standard_pitting_safety, edge_line_load_n_per_mm, edge_length_mm, life_hours, nearest_limit,
+        reason, caveat, within_torques_solved, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
         micropitting_safety.
 
         Returns
@@ -341,12 +345,16 @@ class MachineLossResult(Result):
         return self.content["machine"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """A row a bin and loaded flank: power, loss, temperatures, safety, film.
+        """A row a bin and loaded flank: power, loss, temperatures, safety, film; bins as in `table`.
+
+        Torques on the pinion: mean, and largest of the bin. loss_in_motion_w is the mean loss in the
+        running machine, bin 0 alone.
 
         Columns: bin, speed_rpm, mesh, flank, pinion_torque_n_m, largest_torque_n_m, power_w, loss_w,
-        loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c, face_gear_bulk_c,
-        largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
-        smallest_micropitting_film_ratio, micropitting_safety, within_torques_solved.
+        loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c,
+        face_gear_bulk_c, largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k,
+        smallest_film_ratio, smallest_micropitting_film_ratio, micropitting_safety,
+        within_torques_solved.
 
         Returns
         -------
@@ -356,7 +364,8 @@ class MachineLossResult(Result):
         return self.content["meshes"].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """A row a bin and body: heat and bulk temperature.
+        """A row a bin and body: heat that friction brings to it, and its bulk temperature; bins as in
+        `table`.
 
         Columns: bin, speed_rpm, body, heat_w, bulk_c.
 

@@ -83,7 +83,8 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; all but `by_flank` and
+        `loads` of the upper gear's drive flank.
     """
     return {
         "ltca": analysis.ltca[0],
@@ -359,8 +360,11 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """Return the factor by which source fem_scaled multiplies forces and slopes: the factor of stage
-    stiffness on k.
+    """Return the factor on forces and slopes of the law: 1, but with source fem_scaled the given mean
+    stiffness over the computed.
+
+    The computed one is the mean over a pitch at the torque and by the definition of the request, as in
+    stage stiffness.
     """
     if request.source != "fem_scaled":
         return 1.0

@@ -124,7 +124,9 @@ def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) 
 
 
 def _solve_bodies(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
-    """Solve every gear's body; equal bodies are solved once."""
+    """Solve the finite element body of every gear, by gear name; gears with equal sections share one
+    solution.
+    """
     bodies: dict[BodySection, SolvedBody] = {}
     for section in sections.values():
         if section not in bodies:

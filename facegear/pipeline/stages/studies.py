@@ -209,7 +209,9 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 
 
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
-    """Say in words the largest errors of the simplifications of the samples."""
+    """Return, as a list of texts, the largest errors by mesh cycles left out and by few contact points
+    of friction.
+    """
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
     cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]
