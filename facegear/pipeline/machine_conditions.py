@@ -62,7 +62,8 @@ def elastic_gears(case: Case) -> bool:
 
 
 def solid_pair(case: Case) -> Any:
-    """Return section tooth_pair where the body of a face gear bends, whose teeth then load that body.
+    """Return section tooth_pair where the body of a face gear bends, for stages that take the pair only
+    because of that body.
 
     Parameters
     ----------
