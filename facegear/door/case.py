@@ -19,9 +19,11 @@ HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Case:
-    """A machine as its config describes it, with all that is known of it.
+    """A machine as its config describes it, with all that is known of it; base of `Gearbox`.
 
-    `config` is validated, `store` finds what is known already or stored by the workflow.
+    `config` is validated, `store` finds what was computed in this session or is stored by the workflow.
+    Nothing in it changes: methods that take other values work on a changed copy, which shares the
+    store.
     """
 
     config: Config
@@ -41,12 +43,13 @@ class Case:
         return resolved_values(self.config)
 
     def with_values(self, changes: Mapping[str, Any]) -> Self:
-        """Return a changed copy; what the changes do not touch is not computed again.
+        """Return a copy with some values of the config changed; results that the changes do not touch
+        are not computed again.
 
         Parameters
         ----------
         changes : Mapping[str, Any]
-            Values by dotted config key (list positions as numbers).
+            Values by dotted config key, such as `dynamics.speed_rpm` (list positions as numbers).
 
         Returns
         -------
@@ -65,8 +68,11 @@ class Case:
         return self._with_changes("with_values", changes)
 
     def _torques(self, torques: float | Iterable[float] | None) -> dict[str, Any]:
-        """Return the changes of a contact analysis's keys for other torques, N m on the pinion; none for
-        None.
+        """Return changes of the config, by dotted key, for a contact analysis at other torques; none
+        for None.
+
+        Torques are in N m on the pinion of one mesh, a single one or several, rising. The torque of the
+        mesh stiffness and the rating are taken out, as they need not lie within these; gauges stay.
         """
         if torques is None:
             return {}
@@ -79,14 +85,20 @@ class Case:
         return changes
 
     def _require_section(self, section: str) -> Mapping[str, Any]:
-        """Return a section of HOLDS as plain values; raise ConfigError where the config leaves it out."""
+        """Return section `tolerances` or `search` as plain values; raise ConfigError where the config
+        leaves it out.
+        """
         values: Mapping[str, Any] | None = self._values[section]
         if values is None:
             raise ConfigError(section, None, f"a section of the config: {HOLDS[section]}")
         return values
 
     def _with_branches(self, changes: Mapping[str, Any]) -> Self:
-        """A copy with a section `branches`, in which some values differ from the config's."""
+        """Return a copy with a section `branches` in which `changes` replace values of the config's own
+        section, if there is one.
+
+        A mapping among the changes replaces only the keys that it holds.
+        """
         section = self._values["branches"] or {}
         inner = {
             key: {**section.get(key, {}), **value} if isinstance(value, Mapping) else value
@@ -95,7 +107,11 @@ class Case:
         return self._with_changes("branches", {"branches": {**section, **inner}})
 
     def _with_changes(self, label: str, changes: Mapping[str, Any]) -> Self:
-        """Return a case with a changed config that shares this one's store; itself without changes."""
+        """Return a copy with changed dotted config keys that shares this case's store; the case itself
+        without changes.
+
+        `label` names the origin of the changes in messages.
+        """
         if not changes:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), label)
@@ -103,21 +119,23 @@ class Case:
 
     @cached_property
     def _chain(self) -> Chain:
-        """Chain of stages that computes the answers of this config."""
+        """Chain of stages that computes or finds the answers of this config; it does not know cases of
+        studies.
+        """
         return Chain(self._values, self.store)
 
 
 def drop_none(changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return changes of a config without those whose value is None.
+    """Return changes of a config without those whose value is None, which stand for "as in the config".
 
     Parameters
     ----------
     changes : mapping
-        Values of dotted config keys.
+        Values by dotted config key.
 
     Returns
     -------
     dict
-        The changes that are given.
+        The changes that are given; empty if none is.
     """
     return {key: value for key, value in changes.items() if value is not None}

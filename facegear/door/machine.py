@@ -12,7 +12,8 @@ from facegear.pipeline.results.machine import (
 
 
 def modes(self: Case) -> "ModesResult":
-    """Compute natural frequencies, classes and shapes.
+    """Compute natural frequencies, classes and shapes of the undamped modes, with constant mean mesh
+    stiffness.
 
     They need a contact analysis unless `modal.stiffness` is average or the mesh stiffness is given.
 
@@ -49,7 +50,8 @@ def statics(self: Case) -> "StaticsResult":
 
 
 def gear_bodies(self: Case) -> "GearBodiesResult":
-    """Compute modes and compliance of face gears that bend, with their hubs held.
+    """Compute modes and compliance of the face gears that bend by finite elements, with their hubs
+    fixed.
 
     Returns
     -------
@@ -71,8 +73,8 @@ def gear_waves(self: Case) -> "GearWavesResult":
 
 
 def shafts(self: Case) -> "ShaftsResult":
-    """Compute stiffness and bearing loads of pinions' shafts, and the twist of engines and rotors, at
-    rest.
+    """Compute stiffness, deflection and bearing loads of pinion shafts, and the twist of torsional
+    springs, at rest.
 
     Returns
     -------
@@ -83,10 +85,11 @@ def shafts(self: Case) -> "ShaftsResult":
 
 
 def shaft_orders(self: Case, speed_rpm: float | None = None) -> "ShaftOrdersResult":
-    """Compute the vibration at the orders of the gears' turns, from runouts, pitch deviations and single
-    teeth.
+    """Compute the vibration at the orders of the gears' turns, from runouts, pitch deviations and
+    single teeth.
 
-    It is linear about the static load.
+    It is linear about the static load: flanks do not part, and the mesh stiffness is its mean. An order
+    counts vibrations in one turn of a gear.
 
     Parameters
     ----------
@@ -103,8 +106,10 @@ def shaft_orders(self: Case, speed_rpm: float | None = None) -> "ShaftOrdersResu
 
 
 def operating_pose(self: Case) -> "OperatingPoseResult":
-    """Compute the pose of the teeth of every mesh under the machine's own forces, and their contact
-    there.
+    """Compute the pose of the teeth of every mesh under the machine's own mean forces, and their
+    contact there.
+
+    `transmission.operating_pose` counts as `static`, whatever the config says.
 
     Returns
     -------

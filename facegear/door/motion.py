@@ -8,7 +8,7 @@ from facegear.pipeline.results.motion import BranchesResult, BranchLociResult, R
 
 
 def response(self: Case, speed_rpm: float | None = None) -> "ResponseResult":
-    """Compute the steady state at a pinion speed.
+    """Integrate the motion to its steady state at a pinion speed.
 
     Parameters
     ----------
@@ -18,8 +18,8 @@ def response(self: Case, speed_rpm: float | None = None) -> "ResponseResult":
     Returns
     -------
     ResponseResult
-        The response. Raises ConfigErrors for a speed that the config would refuse, NotConverged naming
-        the speed.
+        Deflections and forces of meshes over time, spectrum, class of motion, bearing forces. Raises
+        ConfigErrors for a speed that the config would refuse, NotConverged naming the speed.
 
     Examples
     --------
@@ -39,22 +39,23 @@ def sweep(
     directions: Sequence[str] | None = None,
     threads: int = 1,
 ) -> "SweepResult":
-    """Compute steady states over speed with the state carried over, with jumps and resonances.
+    """Compute steady states over speed, up and down, each from the state at the speed before it, with
+    jumps and resonances.
 
-    What is None is as in the config.
+    Arguments that are None are as in section `dynamics.sweep` of the config.
 
     Parameters
     ----------
     from_rpm : float or None
-        First speed of the pinions, rpm.
+        Lowest speed of the pinions, rpm; `down` ends there.
     to_rpm : float or None
-        Last speed of the pinions, rpm.
+        Highest speed of the pinions, rpm.
     points : int or None
-        Number of speeds.
+        Number of evenly spaced speeds.
     directions : Sequence[str] | None
         `up`, `down` or both.
     threads : int
-        Number of threads.
+        Number of threads that compute; results do not depend on it.
 
     Returns
     -------
@@ -127,7 +128,7 @@ def branches(
 def branch_loci(
     self: Case, parameters: Sequence[str] | None = None, nearest: int | None = None
 ) -> "BranchLociResult":
-    """Follow folds and period doublings, with cusps, while a second parameter changes.
+    """Follow folds and period doublings, with cusps, in the plane of speed and a second parameter.
 
     Parameters
     ----------
@@ -141,7 +142,8 @@ def branch_loci(
     Returns
     -------
     BranchLociResult
-        The loci. Raises ConfigErrors for values that the config would refuse.
+        One curve for each special point and parameter. Raises ConfigErrors for values that the config
+        would refuse.
     """
     loci = drop_none({"parameters": parameters, "nearest": nearest})
     return self._with_branches({"loci": loci} if loci else {})._chain.result(BranchLociResult)

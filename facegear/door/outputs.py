@@ -37,8 +37,8 @@ def report(self: Case, path: str | Path, on_stage: Callable[[str, str], None] | 
     path : str or Path
         Page to write, which ends in ``.html``.
     on_stage : callable, optional
-        Called with ``report`` and about how long it will take, and then with the name of each stage and
-        its summary, or ``not computed:`` and the reason, as soon as it is known.
+        Called as `on_stage(name, summary)`: first with ``report`` and about how long it will take, then
+        with each stage and its summary, or ``not computed:`` and the reason, as soon as it is known.
 
     Returns
     -------
@@ -56,13 +56,14 @@ def report(self: Case, path: str | Path, on_stage: Callable[[str, str], None] | 
 
 
 def summary(self: Case) -> str:
-    """Write what is known of the machine as lines for the terminal; geometry is all that it computes.
+    """Write what is known of the machine as lines for the terminal; of what is not known only the
+    geometry is computed.
 
     Returns
     -------
     str
-        Status, key numbers, verdicts with their reasons, and gear data as on a drawing. What was computed
-        in this session, or is stored and current, is in it.
+        Status, key numbers, verdicts with their reasons, and gear data as on a drawing. What was
+        computed in this session, or is stored and current, is in it.
 
     Examples
     --------
@@ -83,7 +84,7 @@ def run(self: Case, folder: str | Path, on_stage: Callable[[str, str], None] | N
     folder : str or Path
         Folder to write to.
     on_stage : Callable[[str, str], None] | None
-        As of `report`.
+        Called as `on_stage(name, summary)` with each stage as soon as it is known; None for no calls.
 
     Returns
     -------
@@ -111,7 +112,7 @@ def figures(
     suffix
         Format of the files, one that matplotlib writes (``.png``, ``.svg``, ``.pdf``).
     on_stage
-        Called with the name of each stage that is computed or read, and its summary.
+        Called as `on_stage(name, summary)` with each stage that is computed or read; None for no calls.
 
     Returns
     -------
@@ -172,7 +173,9 @@ def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None
 
 
 def _scene(self: Case, path: Path) -> Path:
-    """Write all gears as a glTF scene; without a machine one pinion and one gear."""
+    """Write all gears in mesh as a glTF scene; without a section transmission one pinion at azimuth 0
+    and the upper gear.
+    """
     from facegear.exchange.gltf import write_gltf  # a library of the extra `exchange`
 
     design, machine = pair_design(self.config.tooth_pair), self.config.transmission
@@ -189,34 +192,37 @@ def _scene(self: Case, path: Path) -> Path:
 
 
 def _gear_unit(self: Case, path: Path) -> Path:
-    """Write shafts, pinions, bearings and materials as REXS."""
+    """Write shafts, pinions, bearings and materials of the config as a REXS file, dated now."""
     date = datetime.now(UTC).isoformat(timespec="seconds")
     return write_rexs(path, gear_unit(self.config), date, version("facegear"))
 
 
 def machine_of(self: Case) -> "Machine":
-    """Build the lumped machine as the dynamics take it.
+    """Build the lumped machine as stage dynamics_response takes it; earlier stages, such as contact,
+    are computed if not known.
 
     Returns
     -------
     Machine
-        The machine. Raises ConfigError where the config has no transmission.
+        The machine, SI units. Raises ConfigError where the config has no transmission.
     """
     return machine_inputs(self._chain.arguments("dynamics_response")).build()
 
 
 def whole_case(self: Case, on_stage: Callable[[str, str], None] | None = None) -> "WholeCase":
-    """Return everything that is asked of the case, computed or read when it is needed.
+    """Return an object that computes all that the config asks for, with the cases of its studies, when
+    it is needed.
 
     Parameters
     ----------
     on_stage : callable or None
-        Called with the name of each stage and with what is done about it.
+        Called as `on_stage(name, summary)` with each stage as soon as it is known; None for no calls.
 
     Returns
     -------
     WholeCase
-        The whole case. Raises MissingExtra without the packages of the extra `workflow`.
+        Object that writes report, files and figures. Raises MissingExtra without the packages of the
+        extra `workflow`.
     """
     from facegear.pipeline.results.whole_case import WholeCase  # the report needs the extra `workflow`
 

@@ -10,7 +10,10 @@ from facegear.pipeline.results.sharing import (
 
 
 def load_sharing(self: Case, speed_rpm: float | None = None) -> "LoadSharingResult":
-    """Compute load-sharing coefficients at a pinion speed, averaged as section `load_sharing` asks.
+    """Compute load-sharing coefficients of the running machine at a pinion speed, averaged as section
+    `load_sharing` asks.
+
+    A coefficient is the largest mesh force of a group that shares a load over the mean of the group.
 
     Parameters
     ----------
@@ -36,6 +39,9 @@ def load_sharing(self: Case, speed_rpm: float | None = None) -> "LoadSharingResu
 def hunting(self: Case, positions: int | None = None) -> "HuntingResult":
     """Compute the load sharing at rest over the hunting cycle, in which every tooth meets every other.
 
+    It is a sequence of static equilibria, without damping and inertia. Without errors that turn, one
+    mesh cycle is all.
+
     Parameters
     ----------
     positions : int or None
@@ -44,7 +50,7 @@ def hunting(self: Case, positions: int | None = None) -> "HuntingResult":
     Returns
     -------
     HuntingResult
-        The load sharing. Raises NotConverged.
+        Loads, coefficients and K_gamma of groups and meshes. Raises NotConverged.
 
     Examples
     --------
@@ -57,7 +63,8 @@ def hunting(self: Case, positions: int | None = None) -> "HuntingResult":
 
 
 def sensitivity(self: Case, positions: int | None = None) -> "SensitivityResult":
-    """Compute by how much each error of the machine, alone, changes its load sharing at rest.
+    """Compute by how much each error of the machine, alone, changes its load sharing at rest: K_gamma
+    per um.
 
     Parameters
     ----------
@@ -74,7 +81,8 @@ def sensitivity(self: Case, positions: int | None = None) -> "SensitivityResult"
 
 
 def sharing_map(self: Case) -> "SharingMapResult":
-    """Map load sharing over the numbers that decide it, and try what changes of the machine would buy.
+    """Map load sharing at rest over the numbers that decide it, and compute what changes of the machine
+    would gain.
 
     Returns
     -------

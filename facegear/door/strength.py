@@ -12,15 +12,15 @@ from facegear.pipeline.results.strength import (
 
 
 def root_stress(self: Case) -> "RootStressResult":
-    """Compute the stress at the fillets of both gears over a tooth's passage, at the contact analysis'
-    torques.
+    """Compute the stress at the fillets of both gears while a tooth passes through the mesh, at the
+    contact analysis' torques.
 
-    The fillets carry gauges for it, whatever the config says.
+    `contact.root_stress` counts as true, whatever the config says.
 
     Returns
     -------
     RootStressResult
-        The stress. Raises what `contact` raises.
+        Tension over torque, passage and gauges, MPa, with peaks. Raises what `contact` raises.
 
     Examples
     --------
@@ -43,7 +43,8 @@ def dynamic_stress(self: Case, speed_rpm: float | None = None) -> "DynamicStress
     Returns
     -------
     DynamicStressResult
-        The stress. Raises what `root_stress` and `response` raise.
+        Largest stress of each mesh with its mean force, running, and a bound, MPa. Raises what
+        `root_stress` and `response` raise.
 
     Examples
     --------
@@ -97,7 +98,7 @@ def rating(self: Case) -> "RatingResult":
 
 
 def friction(self: Case, speed_rpm: float | None = None) -> "FrictionResult":
-    """Compute sliding, loss, temperatures and film of one mesh at a pinion speed.
+    """Compute sliding, friction loss, temperatures and film of one mesh at a pinion speed.
 
     Parameters
     ----------
@@ -123,7 +124,8 @@ def friction(self: Case, speed_rpm: float | None = None) -> "FrictionResult":
 
 
 def losses(self: Case, speed_rpm: float | None = None) -> "MachineLossResult":
-    """Compute the loss of every mesh and the heat of every body at a pinion speed.
+    """Compute the friction loss of every mesh and the heat of every body at rest under the mean
+    torques, at a pinion speed.
 
     Over the duty cycle as well, where `strength.load_factors` is `machine`.
 

@@ -16,18 +16,18 @@ from facegear.studies.statistics import Loosest, loosest
 
 
 def study(self: Case, values: Mapping[str, Iterable[Any]]) -> "Study":
-    """Change some keys of the machine, in every combination of their values.
+    """Make a changed copy of the machine for every combination of values of some keys.
 
     Parameters
     ----------
     values : Mapping[str, Iterable[Any]]
-        Values of each dotted config key.
+        Values of each dotted config key; not empty.
 
     Returns
     -------
     Study
-        The changed machines. Raises ConfigErrors with one line for every value that the config would
-        refuse.
+        The changed machines by label, `key = value, ...`; nothing is computed yet. Raises ConfigErrors
+        with one line for every value that the config would refuse.
 
     Examples
     --------
@@ -44,13 +44,13 @@ def study(self: Case, values: Mapping[str, Iterable[Any]]) -> "Study":
 
 
 def tolerances(self: Case, samples: int | None = None) -> "TolerancesResult":
-    """Compute percentiles, fractions and Sobol indices of the machine with its tolerances, in one
-    process.
+    """Draw machines from the tolerances of the config, and compute percentiles, fractions and Sobol
+    indices, in one process.
 
     Parameters
     ----------
     samples : int or None
-        Number of samples, without Sobol indices; None for that of the config, with them.
+        Number of random machines, then without Sobol indices; None for that of the config, with them.
 
     Returns
     -------
@@ -70,18 +70,18 @@ def load_map(
     samples: int | None = None,
 ) -> "LoadMapResult":
     """Compute percentiles of the machine with its tolerances over torque and speed, with the same
-    machines everywhere.
+    random machines at every load.
 
-    What is None is as in section `tolerances.load_map`, or its default.
+    Arguments that are None are as in section `tolerances.load_map`, or its default.
 
     Parameters
     ----------
     torque_factors : Sequence[float] | None
-        Torques, as ratios to the machine's.
+        Factors by which all torques of the config are multiplied.
     speeds_rpm : Sequence[float] | None
         Speeds of the pinions, rpm; for a dynamic model only.
     samples : int or None
-        Number of machines.
+        Number of random machines.
 
     Returns
     -------
@@ -105,12 +105,13 @@ def loosest_tolerances(
 ) -> "Loosest":
     """Compute the factor by which deviations may grow until a percentile of a quantity exceeds a limit.
 
-    Twelve times `samples` machines are computed.
+    Factors up to `max_factor` are tried with the same number of random machines each, twelve times
+    `samples` in all.
 
     Parameters
     ----------
     quantity : str
-        Column of the samples.
+        Column of `tolerances().samples()`, such as a K_gamma.
     at_most : float
         Limit, in the unit of the quantity.
     percentile : float
@@ -118,21 +119,25 @@ def loosest_tolerances(
     causes : Sequence[str] | None
         Names of the causes whose deviations grow; None for all.
     samples : int
-        Number of samples.
+        Number of random machines for each factor.
     max_factor : float
         Largest factor tried.
 
     Returns
     -------
     Loosest
-        The factor. Raises ConfigError without a section `tolerances`, FacegearError for names that do not
-        exist, or a limit exceeded without any deviation.
+        The factor (`scale`) with its interval, and all trials. Raises ConfigError without a section
+        `tolerances`, FacegearError for names that do not exist, or a limit exceeded without any
+        deviation.
     """
     cause_sections = self._require_section("tolerances")["causes"]
     names = [cause["name"] for cause in cause_sections]
     scaled_names = [require_choice(name, names, "causes") for name in (names if causes is None else causes)]
 
     def sample_quantity(scale: float) -> Any:
+        """Return the quantity of all samples (n,) where the deviations of the chosen causes are
+        multiplied by `scale`.
+        """
         scaled_causes = [
             {**cause, "moves": {key: gain * scale for key, gain in cause["moves"].items()}}
             if cause["name"] in scaled_names
@@ -148,8 +153,7 @@ def loosest_tolerances(
 
 
 def search(self: Case, generations: int | None = None, seeds: Sequence[int] | None = None) -> "SearchResult":
-    """Search designs that no other beats in every objective of the config's section `search`, in one
-    process.
+    """Search the Pareto front of designs for section `search` of the config, by NSGA-II in one process.
 
     Parameters
     ----------
@@ -161,8 +165,8 @@ def search(self: Case, generations: int | None = None, seeds: Sequence[int] | No
     Returns
     -------
     SearchResult
-        The designs. Raises ConfigError without a section `search`, and FacegearError naming the extra
-        where pymoo is not installed.
+        All designs, the front and its winners. Raises ConfigError without a section `search`, and
+        FacegearError naming the extra where pymoo is not installed.
     """
     self._require_section("search")
     changes = drop_none({"search.generations": generations, "search.seeds": seeds})

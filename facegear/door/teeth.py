@@ -37,7 +37,7 @@ def topography(self: Case) -> "TopographyResult":
     Returns
     -------
     TopographyResult
-        The points.
+        The points of both flanks of both gears, mm, with deviations in um.
 
     Examples
     --------
@@ -51,20 +51,20 @@ def topography(self: Case) -> "TopographyResult":
 def contact(
     self: Case, torques: float | Iterable[float] | None = None, positions: int | None = None
 ) -> "ContactResult":
-    """Solve the loaded tooth contact at every position and torque.
+    """Solve the loaded tooth contact at every position of a pitch and every torque.
 
     Parameters
     ----------
     torques : float | Iterable[float] | None
-        N m on the pinion for one mesh, rising; None for those of the config.
+        Torques on the pinion for one mesh, N m, one or several, rising; None for those of the config.
     positions : int or None
         Number of positions in a pitch; None for that of the config.
 
     Returns
     -------
     ContactResult
-        The contact. Raises ConfigErrors for values that the config would refuse, NotConverged naming
-        position and torque.
+        Transmission error, stiffness, load shares and pressures. Raises ConfigErrors for values that
+        the config would refuse, NotConverged naming position and torque.
 
     Examples
     --------
@@ -131,6 +131,9 @@ def displaced_contact(
     flanks = displaced_contact(config.tooth_pair, config.transmission, mesh, *displacements, position)
 
     def solve(torques: float | Iterable[float] | None) -> "Outcome":
+        """Solve the contact of the displaced flanks at torques (N m on the pinion); None for those of
+        the config.
+        """
         gearbox = self._with_changes("displaced_contact", self._torques(torques))
         parts = [gearbox._chain.part("compliance", "arrays", {"body": body}) for body in BODIES]
         contact = gearbox.config.contact_used
@@ -147,7 +150,8 @@ def tooth_errors(self: Case) -> "ToothErrorsResult":
     Returns
     -------
     ToothErrorsResult
-        The errors. Raises FacegearError where `tooth_pair` has no grids of single teeth.
+        Amplitudes at orders of each gear's turn. Raises ConfigError where `tooth_pair` has no grids of
+        single teeth.
     """
     pair = self.config.tooth_pair
     flanks = [body.flanks for body in (pair.pinion, pair.face_gear) if body is not None]
@@ -158,12 +162,14 @@ def tooth_errors(self: Case) -> "ToothErrorsResult":
 
 
 def stiffness(self: Case) -> "StiffnessResult":
-    """Compute k(t) of one mesh at the config's load, or from given harmonics.
+    """Compute the mesh stiffness k(t) of one mesh at the config's load, or from harmonics that the
+    config gives.
 
     Returns
     -------
     StiffnessResult
-        The stiffness. Raises ConfigError for a load outside those of the contact analysis.
+        Fourier series of k in N/m, and its curve. Raises ConfigError for a load outside those of the
+        contact analysis.
 
     Examples
     --------
@@ -175,11 +181,13 @@ def stiffness(self: Case) -> "StiffnessResult":
 
 
 def mesh_law(self: Case) -> "MeshLawResult":
-    """Compute the forces of the flanks over phase and deflection, which `mesh_law: load_dependent` uses.
+    """Compute the forces of the flanks over phase and deflection, which `mesh_law: load_dependent`
+    uses.
 
     Returns
     -------
     MeshLawResult
-        The law. Raises ConfigError for a pair without bodies, and what `contact` raises.
+        Fourier series of force and slope at levels of deflection. Raises ConfigError for a pair without
+        bodies, and what `contact` raises.
     """
     return self._chain.result(MeshLawResult)

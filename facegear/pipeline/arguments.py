@@ -24,8 +24,8 @@ from facegear.schema.tolerances import Design, Tolerances, chunks
 def typed_arguments(function: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Convert plain config values to the sections that a function's annotations ask for.
 
-    The values are those of a config that was validated. This is where plain values, as Snakemake hands them
-    from process to process, become objects again.
+    The values are those of a config that was validated. This is where plain values, as Snakemake hands
+    them from process to process, become objects again.
 
     Parameters
     ----------
@@ -37,14 +37,17 @@ def typed_arguments(function: Callable[..., Any], values: Mapping[str, Any]) -> 
     Returns
     -------
     dict[str, Any]
-        The values; a mapping becomes a section where the annotation is a class with `of_config`.
+        The values by argument name. A mapping becomes an object where the annotation, or a part of a
+        union, is a class with `of_config`; other values stay.
     """
     hints = get_type_hints(function)
     return {name: _section_of(hints.get(name), value) for name, value in values.items()}
 
 
 def _section_of(kind: Any, value: Any) -> Any:
-    """Return a mapping as the section that an annotation names, any other value as it is."""
+    """Return a mapping as an object of the class that the annotation `kind`, or a part of a union,
+    names; other values as they are.
+    """
     if isinstance(value, Mapping):
         for candidate in (kind, *get_args(kind)):
             if hasattr(candidate, "of_config"):
@@ -53,7 +56,8 @@ def _section_of(kind: Any, value: Any) -> Any:
 
 
 def load_sharing_options(case: Case) -> Any:
-    """Return section load_sharing without the limit that only the report's verdict needs.
+    """Return section load_sharing without `required_k_gamma`, a limit that no result depends on but the
+    report's verdict.
 
     Parameters
     ----------
@@ -100,7 +104,8 @@ def duty_torques(case: Case) -> list[float]:
     Returns
     -------
     list of float
-        N m in each mesh of an input, rising, each once: DUTY_POINTS of them where there are more.
+        Torques of bins with time in them, N m in each mesh of an input, rising, each once; DUTY_POINTS
+        of them, evenly by rank, where there are more. Empty without section strength.
     """
     section = case.values["strength"]
     torques = sorted({load["torque_n_m"] for load in section["duty"] if load["hours"] > 0}) if section else []
@@ -120,7 +125,8 @@ def sweep_chunks(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `direction` and `number` of each chunk.
+        `direction` (`up` or `down`) and `number` (text, from 0) of each chunk: the wildcards of stage
+        dynamics_sweep_chunk.
     """
     sweep = case.values["dynamics"]["sweep"]
     numbers = range(sweep["chunks"])
@@ -128,7 +134,8 @@ def sweep_chunks(case: Case) -> list[Wildcards]:
 
 
 def random_starts(case: Case) -> list[Wildcards]:
-    """Return the speeds at which random starts are made, by number.
+    """Return the speeds at which random starts are made, by their index in
+    `branches.explore.speeds_rpm`.
 
     Parameters
     ----------
@@ -138,19 +145,20 @@ def random_starts(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `number` of each speed.
+        `number` (text, from 0) of each speed: the wildcards of stage branches_starts. One, for the
+        nominal speed, where none is given.
     """
     speeds = case.values["branches"]["explore"]["speeds_rpm"]
     return [{"number": str(number)} for number in range(max(len(speeds), 1))]
 
 
 def tolerance_chunks(design: "Design") -> Callable[[Case], list[Wildcards]]:
-    """Return a function that lists the chunks of a design of samples.
+    """Make a function that lists the chunks into which the samples of a design are cut.
 
     Parameters
     ----------
     design : 'Design'
-        `samples` or `indices`.
+        `samples` for random ones, `indices` for those from which Sobol indices follow.
 
     Returns
     -------
@@ -160,6 +168,9 @@ def tolerance_chunks(design: "Design") -> Callable[[Case], list[Wildcards]]:
     """
 
     def wildcards_of_chunks(case: Case) -> list[Wildcards]:
+        """Return wildcards `design`, `first` and `last` (numbers of samples, as text, both included) of
+        each chunk.
+        """
         section = Tolerances.of_config(case.values["tolerances"])
         sample_ranges = chunks(section, design)
         return [{"design": design, "first": str(first), "last": str(last)} for first, last in sample_ranges]
@@ -178,7 +189,7 @@ def islands(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `seed` of each island.
+        `seed` (text) of each island: the wildcards of stage search_island.
     """
     return [{"seed": str(seed)} for seed in case.values["search"]["seeds"]]
 
@@ -194,13 +205,14 @@ def both_bodies(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `body` of each.
+        `{"body": "pinion"}` and `{"body": "face_gear"}`.
     """
     return [{"body": body} for body in BODIES]
 
 
 def config_name(case: Case) -> str:
-    """Return the name of the config, which the points of its studies share.
+    """Return the name of the config: the id of the case without `/studies/...`, so that all points of
+    its studies share it.
 
     Parameters
     ----------
@@ -216,8 +228,10 @@ def config_name(case: Case) -> str:
 
 
 def without_gaps(case: Case) -> Any:
-    """Return section tooth_pair without keys that move no node: cases that differ in gaps share their
-    compliance.
+    """Return section tooth_pair without GAPS, the keys that move flanks but no node of the finite
+    element bodies.
+
+    Cases that differ in these keys alone share their compliance.
 
     Parameters
     ----------
@@ -236,9 +250,11 @@ def without_gaps(case: Case) -> Any:
 
 
 def without_loads(case: Case) -> Any:
-    """Return section contact without LOADING, so that cases that differ in loads share their compliance.
+    """Return section contact without LOADING, so that cases that differ in loads share their
+    compliance.
 
-    Its cuts along the face are those that the contact ellipse of a crowned pair needs.
+    For a pair with crowned or measured flanks `refinement.width`, the number of cuts along the face, is
+    replaced by the one that the contact ellipse needs, which depends on the loads.
 
     Parameters
     ----------
@@ -273,14 +289,18 @@ def gears_met(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        `upper`, or `upper` and `lower`.
+        `upper` without a machine or with one face gear, whatever its name; otherwise `upper` and
+        `lower`.
     """
     machine: Any = case.values["transmission"]
     return ["upper"] if machine is None or len(machine["face_gears"]) == 1 else ["upper", "lower"]
 
 
 def sampled_contact(case: Case) -> bool:
-    """Whether samples have a contact analysis of their own: asked for, or a cause moves the tooth pair.
+    """Whether samples of tolerances have a contact analysis of their own: asked for, or a cause moves
+    the tooth pair.
+
+    Otherwise all samples have the mesh stiffness of the machine itself.
 
     Parameters
     ----------
@@ -297,7 +317,7 @@ def sampled_contact(case: Case) -> bool:
 
 
 def lubricated_samples(case: Case) -> dict[str, Any] | None:
-    """Return sections lubrication and tooth_pair where samples of tolerances are lubricated.
+    """Return sections lubrication and tooth_pair, from which samples of tolerances take their friction.
 
     Parameters
     ----------
@@ -316,6 +336,8 @@ def lubricated_samples(case: Case) -> dict[str, Any] | None:
 
 def stored_rubbing(case: Case) -> bool:
     """Whether samples take friction from the stored contact, because they have no contact of their own.
+
+    It needs a section `lubrication`.
 
     Parameters
     ----------
@@ -359,27 +381,30 @@ def searched_contact(case: Case) -> bool:
 
 
 def pair_where(has_contact: Callable[[Case], bool]) -> Callable[[Case], dict[str, Any] | None]:
-    """Return a function that gives the sections of the tooth pair where machines among many are put into
-    contact.
+    """Make a function that gives the sections of the tooth pair where sampled or searched machines are
+    put into contact.
 
     Parameters
     ----------
     has_contact : Callable[[Case], bool]
-        Condition of the case.
+        Condition of the case under which machines have a contact analysis of their own.
 
     Returns
     -------
     Callable[[Case], dict[str, Any] | None]
-        Function of the case that returns plain values of PAIR_SECTIONS by name, None where the condition
-        fails.
+        Function of the case that returns plain values of PAIR_SECTIONS by name, None where the
+        condition fails.
     """
 
     def sections(case: Case) -> dict[str, Any] | None:
+        """Return plain values of PAIR_SECTIONS by name if the condition holds for the case, else None."""
         return {key: case.values[key] for key in PAIR_SECTIONS} if has_contact(case) else None
 
     return sections
 
 
 def _causes(section: Mapping[str, Any] | None) -> list[str]:
-    """Return the config keys that the causes of section tolerances move."""
+    """Return the dotted config keys that the causes of section tolerances change; none without the
+    section.
+    """
     return [key for cause in (section or {}).get("causes", ()) for key in cause["moves"]]

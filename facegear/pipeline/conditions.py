@@ -50,6 +50,9 @@ def always(case: Case) -> bool:
 def contact(case: Case) -> bool:
     """Whether a contact analysis gives the stiffness, or root stress or friction is asked for.
 
+    That is `mesh_stiffness.source` other than harmonics, `contact.root_stress`, or a section
+    `lubrication`.
+
     Parameters
     ----------
     case : Case
@@ -66,6 +69,8 @@ def contact(case: Case) -> bool:
 def computed_stiffness(case: Case) -> bool:
     """Whether the mesh stiffness k(t) is computed from contact, not given by the config.
 
+    It is given where `mesh_stiffness.source` is `harmonics`.
+
     Parameters
     ----------
     case : Case
@@ -81,6 +86,8 @@ def computed_stiffness(case: Case) -> bool:
 
 def single_teeth(case: Case) -> bool:
     """Whether a contact analysis is made and deviations of single teeth are given.
+
+    They are measured grids of `flanks.grids` of either body that name a tooth.
 
     Parameters
     ----------
@@ -100,6 +107,8 @@ def single_teeth(case: Case) -> bool:
 def measured_flanks(case: Case) -> bool:
     """Whether deviations of flanks are given.
 
+    They are grids of `flanks.grids` of either body, for all teeth or for one.
+
     Parameters
     ----------
     case : Case
@@ -116,6 +125,8 @@ def measured_flanks(case: Case) -> bool:
 
 def load_dependent(case: Case) -> bool:
     """Whether mesh forces depend on the load.
+
+    They do where `mesh_stiffness.mesh_law` is `load_dependent`.
 
     Parameters
     ----------
@@ -149,6 +160,8 @@ def load_dependent_machine(case: Case) -> bool:
 def poses(case: Case) -> bool:
     """Whether meshes stand where the machine's own forces put them.
 
+    They do where `transmission.operating_pose` is `static`.
+
     Parameters
     ----------
     case : Case
@@ -164,6 +177,8 @@ def poses(case: Case) -> bool:
 
 def posed_stress(case: Case) -> bool:
     """Whether meshes stand where their own forces put them, and root stress or a rating is asked for.
+
+    A rating is asked for by section `strength`.
 
     Parameters
     ----------
@@ -197,6 +212,9 @@ def posed_rating(case: Case) -> bool:
 def tilting(case: Case) -> bool:
     """Whether a body of the machine may tilt or bend, so that the error of the shaft angle changes.
 
+    Shafts of pinions let them tilt; so do the keys TILTS of any face gear. It needs a section
+    `transmission`.
+
     Parameters
     ----------
     case : Case
@@ -214,6 +232,9 @@ def tilting(case: Case) -> bool:
 
 def modes_from_contact(case: Case) -> bool:
     """Whether modes take their stiffness from the contact analysis.
+
+    Otherwise they take the mean stiffness that the config gives; `modes_need_contact` of
+    facegear.schema has the rules.
 
     Parameters
     ----------

@@ -11,8 +11,8 @@ from facegear.pipeline.studies import NOMINAL, Points, _id, names, points
 def contact_points(case: Case) -> Points:
     """Return the machine itself and all points that are compared with it by their contact.
 
-    Of a study these are its points with a contact of their own, if one of them has another contact than the
-    machine.
+    A point of a study is one changed machine. A study is taken, with all its points that have a contact
+    analysis, if one of them has another contact than the machine itself.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def contact_points(case: Case) -> Points:
     Returns
     -------
     Points
-        Study, point and label of each, NOMINAL first.
+        Study, point and label of each, NOMINAL first; NOMINAL alone where nothing is compared.
     """
     return _with_own(case, "contact", conditions.contact)
 
@@ -30,6 +30,9 @@ def contact_points(case: Case) -> Points:
 def friction_points(case: Case) -> Points:
     """Return the machine itself and the points of every study that changes the loss of its meshes.
 
+    A study is taken, with all its points that have losses, if one of them has another loss than the
+    machine itself.
+
     Parameters
     ----------
     case : Case
@@ -38,14 +41,16 @@ def friction_points(case: Case) -> Points:
     Returns
     -------
     Points
-        Study, point and label of each, NOMINAL first.
+        Study, point and label of each, NOMINAL first; NOMINAL alone where nothing is compared.
     """
     return _with_own(case, "machine_loss", machine_conditions.machine_friction)
 
 
 def _with_own(case: Case, stage: str, has: Callable[[Case], bool]) -> Points:
-    """Machine itself and the points with a stage, of studies with at least one point that shares no files of
-    it.
+    """Return NOMINAL and the points of studies for which a stage is made anew.
+
+    A study counts if for one of its points the files of `stage` are not shared with the case itself.
+    All points of such a study are taken for which `has`, the condition of the stage, is true.
     """
     if not has(case) or not case.values["studies"]:
         return [NOMINAL]
@@ -69,7 +74,7 @@ def contact_cases(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcards `{"case": id}` of each, in the order of `contact_points`.
     """
     return _cases(case, contact_points(case))
 
@@ -85,19 +90,22 @@ def friction_cases(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcards `{"case": id}` of each, in the order of `friction_points`.
     """
     return _cases(case, friction_points(case))
 
 
 def _cases(case: Case, selection: Points) -> list[Wildcards]:
-    """Return the wildcards of the case itself and of the selected study points."""
+    """Return wildcards `{"case": id}` of the case itself and of the study points behind the first of
+    `selection`.
+    """
     point_cases = ({"case": _id(case, *point[:2])} for point in selection[1:])
     return [{"case": str(case.values["case"])}, *point_cases]
 
 
 def law_points(case: Case) -> Points:
-    """Return the machine itself and the points with another mesh law.
+    """Return the machine itself and the study points whose `mesh_stiffness.mesh_law` differs from the
+    machine's.
 
     Parameters
     ----------
@@ -129,7 +137,7 @@ def other_laws(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        Wildcard `case` of each point.
+        Wildcards `{"case": id}` of each point of `law_points` but the machine itself.
     """
     return _cases(case, law_points(case))[1:]
 
@@ -145,15 +153,14 @@ def law_labels(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        A label for each point.
+        Name of the machine's mesh law, then the label of each point.
     """
     machine_label = str(case.values["mesh_stiffness"]["mesh_law"]).replace("_", "-")
     return [machine_label, *(label for _, _, label in law_points(case)[1:])]
 
 
 def law_figures(case: Case) -> list[str]:
-    """Return the names of the figures of the mesh law: loads in the table, and sweeps where a study has
-    several laws.
+    """Return the names of the figures of loads in the table of the mesh law.
 
     Parameters
     ----------
@@ -163,7 +170,8 @@ def law_figures(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        `law_loads`, and `law_sweeps` where there are laws to compare.
+        `law_loads`, and `law_sweeps` where the machine's law is load-dependent and a study has another
+        law.
     """
     has_comparison = conditions.load_dependent(case) and len(law_points(case)) > 1
     return ["law_loads", *(["law_sweeps"] if has_comparison else [])]
@@ -171,6 +179,8 @@ def law_figures(case: Case) -> list[str]:
 
 def friction_studied(case: Case) -> bool:
     """Whether a study changes the loss of the machine's meshes.
+
+    `friction_points` then holds more than the machine itself.
 
     Parameters
     ----------
@@ -187,6 +197,8 @@ def friction_studied(case: Case) -> bool:
 
 def contact_studied(case: Case) -> bool:
     """Whether a study changes the contact of the pair.
+
+    `contact_points` then holds more than the machine itself.
 
     Parameters
     ----------
@@ -212,7 +224,7 @@ def contact_titles(case: Case) -> dict[str, str]:
     Returns
     -------
     dict[str, str]
-        Title by name.
+        Title of the study in the config, by its name.
     """
     study_names = {name for name, _, _ in contact_points(case)}
     return {study["name"]: study["title"] for study in case.values["studies"] if study["name"] in study_names}
@@ -229,14 +241,15 @@ def contact_figures(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        The names.
+        For each study `contact_study_<name>` (curves) and `contact_pattern_study_<name>`.
     """
     prefixes = ("study_", "pattern_study_")
     return [f"contact_{kind}{name}" for name in contact_titles(case) for kind in prefixes]
 
 
 def contact_torque(case: Case) -> float:
-    """Return the torque that the figures show: that of the mesh stiffness, else the largest one solved.
+    """Return the torque at which figures compare contacts: `mesh_stiffness.torque_n_m`, or the largest
+    solved if it is None or 0.
 
     Parameters
     ----------

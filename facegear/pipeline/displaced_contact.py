@@ -35,7 +35,13 @@ def displaced_contact(
     face_gear: Mapping[str, float],
     position: float,
 ) -> dict[str, DisplacedFlank]:
-    """Compute the unloaded contact of both flanks of a mesh.
+    """Compute the unloaded contact of the drive and the back flank of a mesh whose two bodies are
+    displaced.
+
+    The displacements are rigid motions, given in frames of the machine and added to the errors of
+    assembly of the config. The pinion's x is the tangent as the upper gear's teeth move, y the gears'
+    axis towards the upper gear, z outwards along the pinion. The gear's x points to azimuth 0, y a
+    quarter turn further, z from the lower to the upper gear. Nothing is loaded: the flanks are rigid.
 
     Parameters
     ----------
@@ -44,24 +50,24 @@ def displaced_contact(
     transmission : Transmission or None
         Section `transmission` of the config, None if it has none.
     mesh : str or None
-        Name of the mesh, None for the first one; None without a transmission.
+        Name of the mesh, `pinion/gear`; None for the first one. It must be None without a transmission.
     pinion : Mapping[str, float]
         Displacement of the pinion by the keys SHIFTS (um) and TURNS (deg); missing keys are 0.
     face_gear : Mapping[str, float]
         Displacement of the face gear, by the same keys (um, deg).
     position : float
-        Place within a pitch, fraction from 0 to 1.
+        Position of the mesh cycle, a fraction of a pitch from 0 to 1.
 
     Returns
     -------
     dict[str, DisplacedFlank]
-        The contact by name of the flank.
+        Path, approach and backlash of each flank (m, rad), by the names `drive` and `back`.
 
     Raises
     ------
     ConfigError
-        For a pair without bodies, a displacement that is not a number within bounds, and a mesh that the
-        machine does not have.
+        For a pair without bodies, a displacement that is not a number within bounds, and a mesh that
+        the machine does not have.
     NotConverged
         Where flanks do not face each other.
     """
@@ -74,19 +80,21 @@ def displaced_contact(
 
 
 def displacement(body: str, values: Mapping[str, float]) -> Displacement:
-    """Return the displacement of a body.
+    """Convert the displacement of a body from the keys and units of a user to SI units, and refuse
+    wrong ones.
 
     Parameters
     ----------
     body : str
         `pinion` or `face_gear`, for the messages.
     values : Mapping[str, float]
-        Values by the keys SHIFTS (um) and TURNS (deg); missing keys are 0.
+        Values by the keys SHIFTS (um, at most LARGEST_SHIFT in magnitude) and TURNS (deg, at most
+        LARGEST_TURN); missing keys are 0.
 
     Returns
     -------
     Displacement
-        The displacement, in m and rad.
+        Shifts (3,) in m and turns (3,) in rad, both in the order x, y, z.
 
     Raises
     ------
@@ -105,9 +113,12 @@ def displacement(body: str, values: Mapping[str, float]) -> Displacement:
 
 
 def _mesh_place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: str | None) -> MeshPlace:
-    """Return the place of a named mesh, or of the first one.
+    """Return the place of a named mesh, or of the first one for None: gear side, pinion azimuth and
+    tilt height.
 
-    A pair without a machine counts as that of an upper gear and a pinion at azimuth 0.
+    The tilt height (m) is that of the point about which the gear tilts, over the pinion's axis and
+    towards the gear. Without a machine the place is that of an upper gear and a pinion at azimuth 0,
+    with the pitch radius as tilt height. Raises ConfigError for a name that does not exist.
     """
     if transmission is None:
         if mesh is not None:
@@ -121,7 +132,7 @@ def _mesh_place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: 
 
 
 def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
-    """Tabulate the unloaded contact.
+    """Tabulate the unloaded contact in the units of its columns (um, mm, deg).
 
     Parameters
     ----------
@@ -131,7 +142,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row for each flank; `DisplacedContact.table` describes the columns.
+        A row for each flank, in the order of `flanks`; `DisplacedContact.table` describes the columns.
     """
     return pd.DataFrame(
         [
@@ -162,25 +173,30 @@ def loaded_displaced_contact(
     bodies: tuple[Arrays, Arrays],
     torques: Sequence[float],
 ) -> Outcome:
-    """Solve the contact of both flanks under torques.
+    """Solve the loaded contact of both flanks of a displaced pair at each torque, over one pitch.
+
+    The compliance of the bodies is that of the pair as assembled; only the gaps follow the
+    displacements. Root stress is not computed.
 
     Parameters
     ----------
     flanks : Mapping[str, DisplacedFlank]
-        Unloaded contact by name of the flank.
+        Unloaded contact by name of the flank; each holds the pair with its displaced assembly.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
-        Section `contact` of the config.
+        Section `contact` of the config: positions per pitch and options of the solver. Its torques are
+        not used.
     bodies : tuple[Arrays, Arrays]
         Arrays of stage compliance, of the pinion and of the face gear.
     torques : Sequence[float]
-        Torques on the pinion, N m, rising.
+        Torques on the pinion, N m, positive and rising.
 
     Returns
     -------
     Outcome
-        Tables `by_torque` and `ltca`.
+        Tables `by_torque` (a row a flank and torque) and `ltca` (a row a flank, torque and position),
+        with the columns of `ContactResult.by_torque` and `.table` behind a first column `flank`.
 
     Raises
     ------
@@ -230,38 +246,41 @@ class DisplacedContact:
     def table(self) -> pd.DataFrame:
         """One row a flank, drive and back: what it meets without load.
 
-        - offset_um, axial_shift_um, shaft_angle_error_deg: errors of assembly that the displacements amount
-          to, those of the config included, as the flank meets them; outward_um: shift of the pinion along its
-          axis, which moves the ends of its face alone.
+        - offset_um, axial_shift_um, shaft_angle_error_deg: errors of assembly that the displacements
+          amount to, those of the config included, as the flank meets them; outward_um: shift of the
+          pinion along its axis, which moves the ends of its face alone.
         - approach_um: how far the flanks have come together along the line of action from as assembled,
-          exactly; deflection_um: its first order, which a lumped mesh counts as its deflection; closing_um:
-          the rest, as in `operating_pose().table()`. A positive approach presses or turns the gear ahead.
+          exactly; deflection_um: its first order, which a lumped mesh counts as its deflection;
+          closing_um: the rest, as in `operating_pose().table()`. A positive approach presses or turns
+          the gear ahead.
         - backlash_um: normal backlash of the displaced pair.
-        - unloaded_path_mm: place of the contact along the pinion's axis; to_inner_end_mm, to_outer_end_mm:
-          its distances from the ends of the face, negative beyond them.
+        - unloaded_path_mm: place of the contact along the pinion's axis; to_inner_end_mm,
+          to_outer_end_mm: its distances from the ends of the face, negative beyond them.
         - pressure_angle_deg: slope of the common normal there; NaN for flanks with modifications or
           deviations and beyond the ends of the face, where the contact is searched.
 
         Returns
         -------
         pd.DataFrame
-            The table.
+            One row for `drive`, one for `back`; column `flank`, then those above.
         """
         return unloaded_table(self.flanks)
 
     def loaded(self, torques: Torques = None) -> pd.DataFrame:
-        """Solve the contact of both flanks under torques; see `contact()`.
+        """Solve the contact of both flanks under torques, by finite element compliances; see
+        `contact()`.
 
         Parameters
         ----------
         torques : Torques
-            Torques on the pinion, N m, rising; None for those of the config.
+            Torques on the pinion, N m, rising; None for those of the config. A single number is one
+            torque.
 
         Returns
         -------
         pd.DataFrame
-            A row for each flank and torque: stiffness, transmission error, pressure, path. Raises what
-            `contact` raises.
+            A row for each flank and torque: `flank`, then the columns of `ContactResult.by_torque`.
+            Raises what `contact` raises.
         """
         table: pd.DataFrame = self.solve(torques).content["by_torque"]
         return table.copy()
@@ -283,5 +302,6 @@ class DisplacedContact:
             return write_workbook(path, {"unloaded": self.table()})
 
     def __repr__(self) -> str:
+        """Return a line with the approach of each flank, um."""
         approaches = ", ".join(f"{name} {1e6 * flank.approach:.4g} um" for name, flank in self.flanks.items())
         return f"DisplacedContact(approach of flanks: {approaches})"

@@ -12,6 +12,8 @@ from facegear.pipeline.stage import Case
 def friction_in_motion(case: Case) -> bool:
     """Whether friction disturbs the motion.
 
+    It does where `lubrication.friction.effect` is `excitation`.
+
     Parameters
     ----------
     case : Case
@@ -44,6 +46,8 @@ def machine_friction(case: Case) -> bool:
 def elastic_gears(case: Case) -> bool:
     """Whether the body of a face gear bends.
 
+    It does where a gear of section `transmission` has a section `body`.
+
     Parameters
     ----------
     case : Case
@@ -58,7 +62,8 @@ def elastic_gears(case: Case) -> bool:
 
 
 def solid_pair(case: Case) -> Any:
-    """Return section tooth_pair where the body of a face gear bends.
+    """Return section tooth_pair where the body of a face gear bends, for stages that take the pair only
+    because of that body.
 
     Parameters
     ----------
@@ -75,6 +80,8 @@ def solid_pair(case: Case) -> Any:
 
 def drive_line(case: Case) -> bool:
     """Whether pinions have shafts, or torques turn masses behind torsional springs.
+
+    These are the sections `transmission.shafts` and `transmission.torsion`.
 
     Parameters
     ----------
@@ -142,6 +149,8 @@ def machine_stress(case: Case) -> bool:
 def machine_loads(case: Case) -> bool:
     """Whether the rating takes K_v and K_gamma from the machine's motion.
 
+    It does where `strength.load_factors` is `machine`.
+
     Parameters
     ----------
     case : Case
@@ -157,6 +166,8 @@ def machine_loads(case: Case) -> bool:
 
 def scuffed_loads(case: Case) -> bool:
     """Whether the rating takes the machine's loads and its flanks are lubricated.
+
+    Scuffing and micropitting are then rated as well.
 
     Parameters
     ----------
@@ -190,6 +201,8 @@ def branches(case: Case) -> bool:
 def shares_load(case: Case) -> bool:
     """Whether the machine splits one load among several of its meshes.
 
+    Such meshes form groups, of inputs or of idlers, for which load-sharing coefficients exist.
+
     Parameters
     ----------
     case : Case
@@ -205,6 +218,8 @@ def shares_load(case: Case) -> bool:
 
 def has_groups_of_pinions(case: Case) -> bool:
     """Whether several pinions of the machine have the same function.
+
+    It does not matter whether they split a load.
 
     Parameters
     ----------
@@ -222,6 +237,9 @@ def has_groups_of_pinions(case: Case) -> bool:
 def hunting(case: Case) -> bool:
     """Whether several pinions do the same, with geometric kinematics.
 
+    The kinematics are `transmission.mesh_kinematics`; `printed` ones treat both flanks of a mesh as
+    one.
+
     Parameters
     ----------
     case : Case
@@ -238,7 +256,8 @@ def hunting(case: Case) -> bool:
 def follows_rotation(case: Case) -> bool:
     """Whether meshes are geometric, and runouts, pitch deviations or unlike teeth disturb them.
 
-    A pitch deviation counts if it is a cumulative one.
+    A pitch deviation counts if it is a cumulative one. Several pinions must do the same, as for
+    `hunting`.
 
     Parameters
     ----------

@@ -10,14 +10,15 @@ from facegear.pipeline.table import STAGES
 
 
 def stage_needs(name: str, values: Values) -> dict[str, Any]:
-    """Return the arguments that a stage takes from a config.
+    """Return the arguments that a stage takes from a config; with those of earlier stages they decide
+    its results.
 
     Parameters
     ----------
     name : str
         Name of the stage.
     values : Values
-        Plain values of a whole config.
+        Plain values of a whole config, with defaults.
 
     Returns
     -------
@@ -33,14 +34,15 @@ def stage_needs(name: str, values: Values) -> dict[str, Any]:
 
 
 def resolved_needs(needs: Needs, case: Case) -> dict[str, Any]:
-    """Return the values of needs.
+    """Return the values of needs for a case: at a dotted key, at several keys as a section, or by a
+    function of the case.
 
     Parameters
     ----------
     needs : Needs
-        Needs by name of the argument.
+        Needs by name of the argument, as rows of the table of stages give them.
     case : Case
-        The case.
+        The case whose config is read.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def resolved_needs(needs: Needs, case: Case) -> dict[str, Any]:
 
 
 def require_section(name: str | None, values: Values) -> None:
-    """Refuse a config without the section that a stage is about.
+    """Raise ConfigError for a config without the section that a stage is about, such as `search`.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def require_section(name: str | None, values: Values) -> None:
 
 
 def stages_before(name: str, values: Values) -> list[str]:
-    """Return a stage and all stages whose results it uses, each once.
+    """Return a stage and all stages from which it takes files, directly or through others, each once.
 
     Parameters
     ----------
@@ -90,7 +92,7 @@ def stages_before(name: str, values: Values) -> list[str]:
     Returns
     -------
     list[str]
-        Names of the stages.
+        Names of the stages, the given one first.
     """
     before: dict[str, None] = {}
     todo, case = [name], Case(values)
@@ -104,20 +106,21 @@ def stages_before(name: str, values: Values) -> list[str]:
 
 
 def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
-    """Return, for each case, the first case whose config agrees with it in everything that a stage depends
-    on.
+    """Find which cases may share files of a stage.
+
+    A case takes them from the first case with the same needs of the stage and of all stages before it.
 
     Parameters
     ----------
     cases : Mapping[str, Values]
-        Plain values of each config by case.
+        Plain values of each config by case id; the order decides which case is the source.
     stage : str
         Name of the stage.
 
     Returns
     -------
     dict[str, str]
-        Source by case.
+        For each case the id of the case whose files it uses, which may be itself.
     """
     first: dict[str, str] = {}
     sources = {}
@@ -129,7 +132,7 @@ def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
 
 
 def _resolve_need(need: Need, case: Case) -> Any:
-    """Return the value of one need of a stage from the config of a case."""
+    """Return the value of one need; several keys give a mapping by the last part of each key."""
     if isinstance(need, ComputedValue):
         return need.function(case)
     if isinstance(need, str):
@@ -138,7 +141,7 @@ def _resolve_need(need: Need, case: Case) -> Any:
 
 
 def value_at(values: Values, key: str) -> Any:
-    """Return the value at a dotted key.
+    """Return the value of a config at a dotted key, such as `dynamics.speed_rpm`.
 
     Parameters
     ----------
@@ -198,7 +201,9 @@ def idle_keys(file_values: Mapping[str, Any], cases: Mapping[str, Mapping[str, A
 
 
 def _keys_read(case: Case) -> Iterator[str]:
-    """Yield the dotted keys that the stages of a plain run, earlier stages and figures read."""
+    """Yield the dotted keys or sections that count for a plain run: needs of its stages and of those
+    before them.
+    """
     run = [name for name, stage in STAGES.items() if stage.condition is not None and stage.condition(case)]
     for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
         for need in STAGES[name].needs.values():
@@ -206,19 +211,24 @@ def _keys_read(case: Case) -> Iterator[str]:
 
 
 def _is_below(key: str, sections: list[str]) -> bool:
-    """Whether a config key lies in one of the sections."""
+    """Whether a dotted config key is one of `sections` or lies inside one."""
     return any(f"{key}.".startswith(f"{section}.") for section in sections)
 
 
 def _keys(need: Need) -> tuple[str, ...]:
-    """Return the config keys that a need reads."""
+    """Return the dotted keys, or whole sections, of the config that a need reads."""
     if isinstance(need, ComputedValue):
         return need.sections
     return (need,) if isinstance(need, str) else need
 
 
 def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iterator[str]:
-    """Yield keys of a file that no stage reads; a section that is not read at all counts as one key."""
+    """Yield the dotted keys of a file that no stage reads; a section that is not read at all counts as
+    one key.
+
+    `read` holds the keys that are read, `above` is the dotted prefix of `section`. Keys with value None
+    are passed over.
+    """
     for name, value in section.items():
         key = f"{above}{name}"
         parts = key.split(".")
@@ -232,7 +242,7 @@ def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iter
 
 
 def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
-    """Whether the config file gives a value for a key."""
+    """Whether the config file itself gives a value other than None at a dotted key."""
     inside: Any = file_values
     for part in key.split("."):
         if not isinstance(inside, Mapping) or part not in inside:
@@ -242,7 +252,9 @@ def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
 
 
 def _switched_off(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield keys that are read but have no effect because of other keys, each with the reason."""
+    """Yield each dotted key that a stage reads but that has no effect because of another key, with the
+    reason in words.
+    """
     stiffness, contact, sweep = values["mesh_stiffness"], values["contact"], values["dynamics"]["sweep"]
     if stiffness["source"] == "harmonics":
         for key in HARMONICS_GIVEN:

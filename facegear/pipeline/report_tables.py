@@ -80,13 +80,15 @@ def reported_tables(case: Case) -> list[tuple[str, str]]:
     Returns
     -------
     list[tuple[str, str]]
-        Stage and file of each table.
+        Name of the stage and name of the file in its row, for each table of a stage that a plain run
+        makes.
     """
     return [(name, file) for name, files in REPORT_TABLES.items() for file in files if asked_for(name, case)]
 
 
 def asked_for(stage: str, case: Case) -> bool:
-    """Whether a plain run of a case makes a stage.
+    """Whether a plain run of a case makes a stage, by the condition of its row; a stage without one is
+    not.
 
     Parameters
     ----------
@@ -111,7 +113,7 @@ def shown_pair(
     stress: Arrays | None,
     friction: Arrays | None,
 ) -> Any:
-    """Return the pair in mesh as the report shows it.
+    """Build the interactive view of the pair in mesh, with loads, stress and friction on its flanks.
 
     Parameters
     ----------
@@ -183,7 +185,8 @@ def outlook_in_words(case: Case, stages: Sequence[Stage]) -> str:
 
 
 def estimated_seconds(case: Case, stages: Sequence[Stage]) -> float:
-    """Seconds that stages, those before them, their figures and the page take on one core.
+    """Estimate the time that stages, those before them, their figures and the page take on one core, by
+    rules of thumb.
 
     Parameters
     ----------
@@ -203,38 +206,42 @@ def estimated_seconds(case: Case, stages: Sequence[Stage]) -> float:
 
 
 def _compliance(case: Case) -> float:
-    """Estimate the seconds that the compliance of both bodies takes."""
+    """Estimate the seconds for the compliance of both bodies, in proportion to the memory that it
+    needs.
+    """
     setup = contact_setup(**typed_arguments(contact_setup, {key: case.values[key] for key in CONTACT}))
     return 1e-9 * COMPLIANCE * setup.memory
 
 
 def _contact(case: Case) -> float:
-    """Estimate the seconds that the contact analysis takes."""
+    """Estimate the seconds for the contact analysis: positions times torques, twice as long with root
+    stress.
+    """
     contact = case.values["contact"]
     gauges = 2.0 if contact["root_stress"] else 1.0
     return gauges * POSITION * contact["positions_per_pitch"] * len(contact["torques_n_m"])
 
 
 def _sweep(case: Case) -> float:
-    """Estimate the seconds that the sweep takes."""
+    """Estimate the seconds for the sweep: speeds times directions times meshes."""
     sweep, machine = case.values["dynamics"]["sweep"], case.values["transmission"]
     meshes = len(machine["pinions"]) * len(machine["face_gears"])
     return SPEED * sweep["points"] * len(sweep["directions"]) * meshes
 
 
 def _sharing(case: Case) -> float:
-    """Estimate the seconds that load sharing takes."""
+    """Estimate the seconds for load sharing of all cases of the config and over its range of speeds."""
     speeds = case.values["load_sharing"]["speed_range"]
     return MOTION * len(case.cases) + SHARED_SPEED * speeds["points"]
 
 
 def _samples(case: Case) -> float:
-    """Estimate the seconds that samples of tolerances take."""
+    """Estimate the seconds for the random samples of tolerances, in proportion to their number."""
     return SAMPLE * float(case.values["tolerances"]["samples"])
 
 
 def _search(case: Case) -> float:
-    """Estimate the seconds that the search takes."""
+    """Estimate the seconds for the search: generations times population times seeds."""
     section = case.values["search"]
     return DESIGN * section["generations"] * section["population"] * len(section["seeds"])
 

@@ -27,16 +27,17 @@ def read_all(upstream: Mapping[str, From], paths: Paths, stages: Mapping[str, St
     Parameters
     ----------
     upstream : Mapping[str, From]
-        Source of each argument by name.
+        Source of each argument by name: an earlier stage and one of its files.
     paths : Paths
-        Path, or list of paths, of each argument by name.
+        Path, or list of paths, of each argument by name; an empty one leaves the argument out.
     stages : Mapping[str, Stage]
         Rows of the table of stages by name.
 
     Returns
     -------
     dict[str, Any]
-        Contents by name of the argument.
+        Tables, arrays or records by name of the argument; a list of them where a source stands for
+        several files.
 
     Raises
     ------
@@ -61,7 +62,8 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
     stage : Stage
         Row of the table of stages.
     content : Mapping[str, Any]
-        Content of each file by name.
+        Content of each file by name, as `Outcome.content`; files with a `view` are made from the
+        content of another.
     paths : Paths
         Path, or list of paths, of each file by name.
 
@@ -82,8 +84,8 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
 def call(stage: Stage, arguments_given: Mapping[str, Any], **extra_arguments: Any) -> "Outcome":
     """Run a stage; plain values of the config become the sections that its function takes.
 
-    A value that the stage refuses is named by its key in the config. It runs on one thread of BLAS, in a job
-    as through the Python interface.
+    A value that the stage refuses is named by its key in the config. It runs on one thread of BLAS, in
+    a job as through the Python interface.
 
     Parameters
     ----------
@@ -92,12 +94,13 @@ def call(stage: Stage, arguments_given: Mapping[str, Any], **extra_arguments: An
     arguments_given : Mapping[str, Any]
         Arguments from the config and from earlier stages by name.
     **extra_arguments : Any
-        Further arguments of the stage's function, such as wildcards.
+        Further arguments of the stage's function: wildcards, and settings such as `threads` or
+        `partial` that decide no number.
 
     Returns
     -------
     'Outcome'
-        Content of its files, and one line about it.
+        Content of its files by name, and one line about it; nothing is written.
     """
     function = load(stage.function)
     with keys_named(), one_blas_thread():
@@ -107,7 +110,11 @@ def call(stage: Stage, arguments_given: Mapping[str, Any], **extra_arguments: An
 
 
 def with_machine(stage: Stage, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return arguments with the machine, or its inputs, in place of the values that decide it.
+    """Replace the arguments that are fields of MachineInputs by one argument: the machine, or its
+    inputs.
+
+    The row's `machine` says which: `machine` gives the built machine, `inputs` gives MachineInputs,
+    empty changes nothing.
 
     Parameters
     ----------
@@ -119,7 +126,7 @@ def with_machine(stage: Stage, arguments: Mapping[str, Any]) -> Mapping[str, Any
     Returns
     -------
     mapping
-        The arguments that the stage's function takes.
+        The arguments that the stage's function takes, with `machine` or `inputs` among them.
 
     Raises
     ------
@@ -137,12 +144,13 @@ def with_machine(stage: Stage, arguments: Mapping[str, Any]) -> Mapping[str, Any
 
 
 def machine_inputs(arguments: Mapping[str, Any]) -> "MachineInputs":
-    """Return the inputs of the machine among the arguments of a stage.
+    """Collect the arguments that are fields of MachineInputs, convert config values to sections, and
+    build the object.
 
     Parameters
     ----------
     arguments : mapping
-        Arguments from the config and from earlier stages by name.
+        Arguments from the config and from earlier stages by name; others are passed over.
 
     Returns
     -------

@@ -28,10 +28,12 @@ MACHINE_INPUTS = "facegear.build.machine:MachineInputs"
 
 @dataclass(frozen=True)
 class Case:
-    """A case by its plain values, among the cases of its config.
+    """A case, which is one machine of a config: the config's own or a point of one of its studies.
 
-    - cases: values of all of them by case id
-    - source: the case whose files of a stage a case shares
+    - values: plain values of its whole config
+    - cases: values of all cases of the config by case id
+    - source: function of stage name and case id that returns the id of the case whose files of the
+      stage that case shares
     """
 
     values: Values
@@ -41,7 +43,9 @@ class Case:
 
 @dataclass(frozen=True)
 class ComputedValue:
-    """A value that follows from some sections of the config by a function of the case."""
+    """A need whose value follows from some sections of the config by a function of the case; it depends
+    on nothing else.
+    """
 
     function: Callable[[Case], Any]
     sections: tuple[str, ...]
@@ -94,7 +98,7 @@ class File:
 
     @property
     def readable(self) -> bool:
-        """Whether it is read again, not only by other programs."""
+        """Whether stages read it again: its ending is in READABLE and it is a single file."""
         return PurePosixPath(self.path).suffix in READABLE and self.each_text is None
 
     def at(self, wildcards: Wildcards = NO_WILDCARDS) -> str:
@@ -108,12 +112,12 @@ class File:
         Returns
         -------
         str
-            Path below the case's folder.
+            Path below the case's folder, such as `dynamics/chunks/up_0.npz`.
         """
         return self.path.format(**wildcards)
 
     def read(self, path: Path) -> Any:
-        """Read the stored content.
+        """Read the stored content, after a check of its checksum, columns, shapes and finite values.
 
         Parameters
         ----------
@@ -153,7 +157,7 @@ class From:
     when: Callable[[Case], bool] | None = None
 
     def is_needed(self, case: Case) -> bool:
-        """Whether the argument is given.
+        """Whether the argument is given in a case; otherwise the stage's function takes its default.
 
         Parameters
         ----------
@@ -178,7 +182,7 @@ class From:
         Returns
         -------
         Sequence[Wildcards]
-            Wildcards of each file.
+            Wildcards of each file that is read; one entry unless `each_wildcards` lists several.
         """
         return [self.wildcards] if self.each_wildcards is None else self.each_wildcards(case)
 
@@ -196,7 +200,7 @@ def from_stage(stage: str, *files: str) -> dict[str, From]:
     Returns
     -------
     dict[str, From]
-        Source of each argument by name.
+        Source of each argument by name, which is the name of the file.
     """
     return {file: From(stage, file) for file in files}
 
@@ -227,7 +231,7 @@ class Figures:
         Returns
         -------
         Sequence[str]
-            The names.
+            The names, also file names without ending; fixed or a function of the case.
         """
         return self.names(case) if callable(self.names) else self.names
 
@@ -277,20 +281,22 @@ class Stage:
 
     @property
     def functions(self) -> tuple[str, ...]:
-        """Functions and classes whose code decides its files, as ``module:name``."""
+        """Functions and classes whose code decides its files, as ``module:name``: its own, views of
+        files, the machine's.
+        """
         views = [file.view for file in self.files.values() if file.view]
         return (self.function, *views, *([MACHINE_INPUTS] if self.machine else []))
 
     @property
     def manifest(self) -> str:
-        """Path of the record beside its files."""
+        """Path of the record beside its files below a case's folder, with wildcards in braces."""
         paths = [PurePosixPath(file.path) for file in self.files.values()]
         name = "_".join([self.name, *(f"{{{wildcard}}}" for wildcard in self.wildcards)])
         return f"{paths[0].parent if paths else self.folder}/{name}{MANIFEST_SUFFIX}"
 
     @property
     def readable(self) -> dict[str, File]:
-        """Its files that are read again."""
+        """Files that stages read again, by name."""
         return {name: file for name, file in self.files.items() if file.readable}
 
     def typed_wildcards(self, wildcards: Wildcards) -> dict[str, Any]:

@@ -13,7 +13,8 @@ Points = list[tuple[str, str, str]]
 
 
 def points(case: Case) -> Points:
-    """Return study, point and label of every point of the studies.
+    """Return every point of the studies of the config; a point is one changed machine, a case of its
+    own.
 
     Parameters
     ----------
@@ -23,7 +24,7 @@ def points(case: Case) -> Points:
     Returns
     -------
     Points
-        The points, study by study.
+        Study, point (both as folder names) and label in words, study by study.
     """
     studies = [Study.of_config(study) for study in case.values["studies"]]
     return [
@@ -42,7 +43,7 @@ def every_point(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each point.
+        Wildcards `{"case": id}` of each point, in the order of `points`.
     """
     return [{"case": _id(case, *point[:2])} for point in points(case)]
 
@@ -58,13 +59,14 @@ def nominal_and_every_point(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcards `{"case": id}`, the case itself first.
     """
     return [{"case": str(case.values["case"])}, *every_point(case)]
 
 
 def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
-    """Return the points of studies whose axis is a number, so that results can be drawn over it.
+    """Return the points of studies whose first axis of numbers has three values or more, so that
+    results can be drawn over it.
 
     Parameters
     ----------
@@ -74,8 +76,8 @@ def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
     Returns
     -------
     list[tuple[str, str, str, str, str, float]]
-        Study, point, label of the number with its unit, label on the other axis, key and number of each
-        point; the number has the unit of its key.
+        For each point: study, point, label of the axis with its unit, label of the point on the other
+        axis, config key of the axis, and its number in the unit of that key.
     """
     rows = []
     for study in (Study.of_config(study) for study in case.values["studies"]):
@@ -100,13 +102,15 @@ def numbered_cases(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcards `{"case": id}` of each, in the order of `numbered_points`.
     """
     return [{"case": _id(case, *point[:2])} for point in numbered_points(case)]
 
 
 def over_numbers(case: Case) -> bool:
     """Whether a study changes a number of a machine three times or more.
+
+    Results are then drawn over that number.
 
     Parameters
     ----------
@@ -132,7 +136,7 @@ def force_figures(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        The names.
+        `study_<name>_forces` for each study of `numbered_points`.
     """
     return [f"study_{name}_forces" for name in dict.fromkeys(point[0] for point in numbered_points(case))]
 
@@ -164,13 +168,14 @@ def sharing_figures(case: Case) -> list[str]:
     Returns
     -------
     list[str]
-        The names.
+        `study_<name>_<kind>` for each study, and each kind of group that splits a load.
     """
     return [f"study_{name}_{kind}" for name in names(case) for kind in kinds_of_groups(case)]
 
 
 def kinds_of_groups(case: Case) -> list[str]:
-    """Return the kinds of groups that split a load; none without a machine.
+    """Return the kinds of groups of meshes that split a load, `idlers` or `inputs`; none without a
+    machine.
 
     Parameters
     ----------
@@ -234,5 +239,5 @@ def has_studies(case: Case) -> bool:
 
 
 def _id(case: Case, study: str, point: str) -> str:
-    """Return the name of a study point as a case."""
+    """Return the id of a study point as a case: `<case>/studies/<study>/<point>`."""
     return f"{case.values['case']}/studies/{study}/{point}"

@@ -46,7 +46,9 @@ def listing() -> str:
 
 
 def _row(stage: Stage, is_source: bool) -> str:
-    """Return the row of a stage in the table of stages of the documentation."""
+    """Return the row of a stage in the table of stages in Markdown; `is_source` says whether another
+    stage takes from it.
+    """
     before = dict.fromkeys(source.stage for source in stage.upstream.values())
     sections = dict.fromkeys(name for need in stage.needs.values() for name in _sections(need))
     cells = (
@@ -68,14 +70,14 @@ def _made_where(stage: Stage, is_source: bool) -> str:
 
 
 def _sections(need: Need) -> list[str]:
-    """Return the sections of the config from which a need takes its value."""
+    """Return the top sections of the config from which a need takes its value."""
     if isinstance(need, ComputedValue):
         return list(need.sections)
     return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]
 
 
 def _files(stage: Stage) -> str:
-    """Paths of a stage's files; the folder stands before the first alone."""
+    """Return the paths of a stage's files, joined by commas; only the first has its folder."""
     paths = [PurePosixPath(file.path.replace("{", "<").replace("}", ">")) for file in stage.files.values()]
     return ", ".join(f"`{path.name if number else path}`" for number, path in enumerate(paths))
 

@@ -31,7 +31,9 @@ class Node(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Module:
-    """A module: what counts of it, and where its names come from."""
+    """A module that was read: its statements, and by name the numbers of the statements and the imports
+    that bind it.
+    """
 
     source: Source
     statements: dict[str, list[int]]
@@ -41,12 +43,17 @@ class _Module:
 
 
 class Closure:
-    """Search for the statements that others reach.
+    """Search over the packages for the statements that other statements reach through the names that
+    they use.
+
+    It is a graph search. Its nodes are statements and modules (`Node`); an edge leads from a statement
+    to each definition that one of its names may mean. Files are read when first met; nothing is
+    imported or run.
 
     Parameters
     ----------
     root : str
-        Folder of the packages.
+        Folder that holds the packages.
     """
 
     def __init__(self, root: str) -> None:
@@ -58,24 +65,26 @@ class Closure:
 
     @property
     def is_current(self) -> bool:
-        """Whether all files that were read are as they were."""
+        """Whether all files that were read have the size and time of change that they had then; False
+        if one is gone.
+        """
         try:
             return all(_state(path) == state for path, state in self._states.items())
         except OSError:
             return False
 
     def find_functions(self, functions: Sequence[str]) -> list[Node]:
-        """Find functions by their names.
+        """Find the nodes at which a search for some functions begins.
 
         Parameters
         ----------
         functions : sequence of str
-            `module:name`, or a module alone, which counts whole.
+            `module:name` (a function, class or constant), or a module alone, which counts whole.
 
         Returns
         -------
         list of Node
-            Their statements, and the annotations of their arguments.
+            Their statements, and for each a node `signature` with the annotations of its arguments.
         """
         entry_nodes: list[Node] = []
         for reference in functions:
@@ -86,7 +95,8 @@ class Closure:
         return entry_nodes
 
     def add_script(self, path: Path) -> list[Node]:
-        """Add a script, all statements of which count.
+        """Read a script that belongs to no package, and return the node at which a search for it
+        begins.
 
         Parameters
         ----------
@@ -96,14 +106,15 @@ class Closure:
         Returns
         -------
         list of Node
-            The script as a whole.
+            One node `whole`: all statements of the script.
         """
         if str(path) not in self._modules:
             self._modules[str(path)] = self._read(path, "", is_script=True)
         return [Node("whole", str(path))]
 
     def search(self, nodes: Iterable[Node]) -> set[Node]:
-        """Find all definitions that some nodes reach through the names they use, these nodes included.
+        """Find all nodes that some nodes reach, directly or through others, by depth-first search;
+        these nodes are included.
 
         Parameters
         ----------
@@ -113,7 +124,7 @@ class Closure:
         Returns
         -------
         set of Node
-            All nodes.
+            All nodes, in no order.
         """
         closure_nodes = set(nodes)
         todo = [*closure_nodes]
@@ -129,12 +140,13 @@ class Closure:
         return closure_nodes
 
     def digest(self, nodes: Iterable[Node]) -> str:
-        """Compute the hash of the code of all nodes.
+        """Compute the hash (SHA-256, cut) of the code of all nodes, and of templates and kernel sources
+        of their packages.
 
         Parameters
         ----------
         nodes : iterable of Node
-            All nodes that count.
+            All nodes that count, as `search` returns them; their order does not matter.
 
         Returns
         -------
@@ -160,12 +172,13 @@ class Closure:
         return digest.hexdigest()[:16]
 
     def names(self, nodes: Iterable[Node]) -> set[str]:
-        """Name what the statements among some nodes bind.
+        """Return the names that the statements among some nodes bind, which are functions, classes and
+        constants.
 
         Parameters
         ----------
         nodes : iterable of Node
-            Any nodes.
+            Nodes, as `search` returns them.
 
         Returns
         -------
@@ -180,12 +193,12 @@ class Closure:
         return bound_names
 
     def modules(self, nodes: Iterable[Node]) -> set[str]:
-        """Name the modules of some nodes.
+        """Return the modules to which some nodes belong.
 
         Parameters
         ----------
         nodes : iterable of Node
-            Any nodes.
+            Nodes, as `search` returns them.
 
         Returns
         -------
@@ -195,7 +208,9 @@ class Closure:
         return {node.module for node in nodes if self._modules[node.module]}
 
     def _beside_hash(self, package: str) -> bytes:
-        """Return the hash of the files that count with a package, such as templates and kernel sources."""
+        """Return the hash of the templates and kernel sources (BESIDE) in a package's folder, computed
+        once.
+        """
         if package not in self._beside:
             folder, digest = self.root.joinpath(*package.split(".")), hashlib.sha256()
             for path in sorted(path for pattern in BESIDE for path in folder.glob(pattern)):
@@ -205,7 +220,12 @@ class Closure:
         return self._beside[package]
 
     def _direct_successors(self, node: Node) -> Iterator[Node]:
-        """Yield what a node reaches at once."""
+        """Yield the nodes to which one edge leads from a node.
+
+        A statement leads to what its names mean and to the modules that its imports load; `whole` leads
+        to all statements and imports of the module; `loaded` leads to what runs when the module is
+        imported.
+        """
         module = self._module(node.module)
         if module is None:
             return
@@ -228,7 +248,9 @@ class Closure:
         yield from (Node("whole", origin) for _, origin, name in module.source.imports if name == "*")
 
     def _load_module(self, name: str, module: _Module) -> Iterator[Node]:
-        """Yield all that runs when a module is loaded: parents, imports and statements with effects."""
+        """Yield what runs when a module is imported: its parent packages, its imports, and statements
+        with effects (`run`).
+        """
         parents = name.split(".") if not module.is_script else []
         yield from (Node("loaded", ".".join(parents[:n])) for n in range(1, len(parents)))
         yield from self._load_imports(module.source.imports)
@@ -237,7 +259,9 @@ class Closure:
                 yield Node("run", name, number)
 
     def _load_imports(self, imports: Iterable[Import]) -> Iterator[Node]:
-        """Yield the modules that imports load."""
+        """Yield a node `loaded` for each module that imports load, submodules taken from a package
+        included.
+        """
         for _, origin, name in imports:
             yield Node("loaded", origin)
             package = self._module(origin)
@@ -245,8 +269,11 @@ class Closure:
                 yield Node("loaded", f"{origin}.{name}")
 
     def _resolve_use(self, name: str, module: _Module, statement: Statement, use: str) -> Iterator[Node]:
-        """Yield the nodes to which a name that a statement uses may refer: definitions, imports or whole
-        modules.
+        """Yield the nodes to which a name that a statement uses may refer: definitions, imports or
+        whole modules.
+
+        `name` is the module of the statement. `use` is a dotted name, WHOLE_MODULE, or NAMED_MODULE
+        before a module's name.
         """
         if use == WHOLE_MODULE:
             yield Node("whole", name)
@@ -261,7 +288,11 @@ class Closure:
                 yield from self._resolve_chain(origin, [attribute, *rest] if attribute else rest)
 
     def _resolve_chain(self, name: str, chain: list[str]) -> Iterator[Node]:
-        """Yield what names, one behind the other, mean in a module; the whole module where none is found."""
+        """Yield the nodes that a dotted name, `chain` by its parts, means in the module `name`.
+
+        Imports are followed from module to module. An empty chain, or one that is not found, yields the
+        whole module.
+        """
         if not is_in_packages(name):
             return
         module = self._module(name)
@@ -289,7 +320,9 @@ class Closure:
             yield Node("whole", name)
 
     def _module(self, name: str) -> _Module | None:
-        """Return the module of a dotted name; None if there is no such file."""
+        """Return the module of a dotted name, read when first asked for; None if the packages have no
+        such file.
+        """
         if name not in self._modules:
             base = self.root.joinpath(*name.split("."))
             alone, package = base.with_suffix(".py"), base / "__init__.py"
@@ -312,6 +345,8 @@ class Closure:
 
 
 def _state(path: str) -> tuple[int, int]:
-    """Return size and time of change of a file."""
+    """Return size (bytes) and time of change (ns) of a file; a file with both unchanged is taken as
+    unchanged.
+    """
     status = os.stat(path)
     return status.st_size, status.st_mtime_ns

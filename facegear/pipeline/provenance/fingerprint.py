@@ -39,9 +39,9 @@ _closures: dict[str, Closure] = {}
 def fingerprint(script: str | Path, root: str | Path, functions: Sequence[str] = ()) -> str:
     """Compute the hash of a script and of all code of the packages that it reaches.
 
-    Where the script calls functions that it does not import by name, their own fingerprint follows behind a
-    dot, so that results can be known without the script. A module that the script imports by its name as text
-    is none of its code.
+    Where the script calls functions that it does not import by name, their own fingerprint follows
+    behind a dot, so that results can be known without the script. A module that the script imports by
+    its name as text is none of its code.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def fingerprint(script: str | Path, root: str | Path, functions: Sequence[str] =
     Returns
     -------
     str
-        The hash, with that of the functions behind a dot where there are any.
+        Sixteen hexadecimal digits, and as many for the functions behind a dot where there are any.
     """
     closure = _closure(root)
     code = closure.digest(closure.search(closure.add_script(Path(script))))
@@ -75,14 +75,15 @@ def stage_fingerprint(functions: Sequence[str], root: str | Path) -> str:
     Returns
     -------
     str
-        The hash.
+        Sixteen hexadecimal digits.
     """
     closure = _closure(root)
     return closure.digest(closure.search(closure.find_functions(functions)))
 
 
 def reached_functions(functions: Sequence[str], root: str | Path) -> set[str]:
-    """Find the functions, classes and constants that count for some functions.
+    """Find the functions, classes and constants of the packages whose code counts in the fingerprint of
+    some functions.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def reached_functions(functions: Sequence[str], root: str | Path) -> set[str]:
 
 
 def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
-    """Find the modules that are imported where some functions are called.
+    """Find the modules of the packages that are imported when some functions are imported and called.
 
     Parameters
     ----------
@@ -120,7 +121,9 @@ def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
 
 
 def _closure(root: str | Path) -> Closure:
-    """Return the closure of a folder, read anew if one of its files changed."""
+    """Return the search over a folder of packages; it is made anew if one of the files that it has read
+    changed.
+    """
     key = str(root)
     if key not in _closures or not _closures[key].is_current:
         _closures[key] = Closure(key)

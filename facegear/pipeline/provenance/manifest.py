@@ -28,8 +28,11 @@ def write_manifest(
     summary: str,
     rebuild: str,
 ) -> None:
-    """Write versions, slice of the config, fingerprint, machine, time and the checksum of every input and
-    output.
+    """Write the manifest of a stage's outputs, a JSON file: what made them, from which inputs, and how
+    to make them again.
+
+    It holds versions, slice of the config, fingerprint, machine, time, summary, and the SHA-256 of
+    every input and output.
 
     Parameters
     ----------
@@ -48,8 +51,8 @@ def write_manifest(
     summary : str
         Summary of the results in one line.
     rebuild : str
-        Command that makes a target again; it is stored with the folder of the outputs behind it and lacks
-        only the name of a file.
+        Command that makes a target again; it is stored with the folder of the outputs behind it and
+        lacks only the name of a file.
     """
     documents.write(
         path,
@@ -78,7 +81,7 @@ def versions() -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        Version by name.
+        Version by name, `python` first.
     """
     versions = {"python": platform.python_version()}
     for name in LIBRARIES:
@@ -99,17 +102,19 @@ def current_manifest(
 ) -> Manifest | None:
     """Return the manifest of a stored file if the file is up to date.
 
-    A file is up to date if its stage ran with the same slice of the config and the same code, on inputs that
-    have not changed and are up to date themselves. The bytes of the file itself are left to its reader.
+    A file is up to date if its stage ran with the same slice of the config and the same code, on inputs
+    that have not changed and are up to date themselves. The bytes of the file itself are left to its
+    reader.
 
     Parameters
     ----------
     path : Path
         The stored file.
     needs : callable
-        Slice of the config by rule; None for a rule that it does not know.
+        Function of the rule's name that returns its current slice of the config; None for a rule that
+        it does not know.
     code : callable
-        Fingerprint of a stage by rule.
+        Function of the rule's name that returns the current fingerprint of its stage.
 
     Returns
     -------
@@ -141,7 +146,9 @@ def current_manifest(
 
 
 def _manifest(path: Path) -> Manifest | None:
-    """Return the readable manifest that covers a file; None if there is none or its folder cannot be read."""
+    """Return the manifest (parsed JSON) beside a file that lists it; None if there is none or its
+    folder cannot be read.
+    """
     try:
         candidates = sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}"))
     except OSError:
@@ -166,7 +173,8 @@ def rebuild_command(
     config: Mapping[str, Any],
     directory: str | Path | None,
 ) -> str:
-    """Return a command line for a shell, to which only the target has to be added.
+    """Compose the command line of Snakemake that makes one file again; only the file's name has to be
+    added at its end.
 
     Parameters
     ----------
@@ -177,8 +185,8 @@ def rebuild_command(
     config : mapping
         Values of `--config` by key.
     directory : str, Path or None
-        Folder that `--directory` named, None without that option. With it all paths are absolute, so that the
-        command works in any folder; without it they are relative to the current folder.
+        Folder that `--directory` named, None without that option. With it all paths are absolute, so
+        that the command works in any folder; without it they are relative to the current folder.
 
     Returns
     -------

@@ -25,10 +25,11 @@ _known_keys: set[str] = set()
 
 
 def recall(file: Path) -> None:
-    """Take from a file what counts of sources, as `remember` wrote it; other sources are parsed.
+    """Fill the memory of parsed sources from a file that `remember` has written, so that these are not
+    parsed again.
 
-    Clones share such a file, as sources are known by their text. A file that cannot be read, or that another
-    version wrote, is passed over.
+    Clones share such a file, as sources are known by the hash of their text. A file that cannot be
+    read, or that another version wrote, is passed over.
 
     Parameters
     ----------
@@ -43,7 +44,8 @@ def recall(file: Path) -> None:
 
 
 def remember(file: Path) -> None:
-    """Write to a file what counts of the sources used last, for the next process, if any was parsed here.
+    """Write the parsed sources that were used last to a file, for the next process, if any was parsed
+    in this one.
 
     Where nothing can be written the next process parses again.
 
@@ -59,7 +61,8 @@ def remember(file: Path) -> None:
 
 
 def source_of(path: Path, module: str) -> Source:
-    """Read statements and imports of a file, without what does not affect its code.
+    """Return statements and imports of a source file, from memory if a file with the same text was
+    parsed before.
 
     Parameters
     ----------
@@ -81,7 +84,7 @@ def source_of(path: Path, module: str) -> Source:
 
 
 def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequence[str]]) -> Source:
-    """Build a Source from the lists of its stored form."""
+    """Build a Source from the lists to which `remember` has turned it in JSON."""
     return Source(
         tuple(
             Statement(tuple(names), code, tuple(uses), _imports(inner), runs, signature, tuple(annotated))
@@ -92,12 +95,14 @@ def _source_of_lists(statements: Iterable[Sequence[Any]], imports: Iterable[Sequ
 
 
 def _imports(lists: Iterable[Sequence[str]]) -> tuple[tuple[str, str, str], ...]:
-    """Build imports from the lists of their stored form."""
+    """Build imports, tuples of bound name, module and name in it, from the lists that stand for them in
+    JSON.
+    """
     return tuple((bound, module, name) for bound, module, name in lists)
 
 
 @cache
 def _version() -> str:
-    """Return Python's version with a digest of the modules that read sources."""
+    """Return a text that changes with Python's version or with the code that parses sources."""
     texts = b"".join(Path(__file__).with_name(name).read_bytes() for name in READERS)
     return f"{sys.version_info[:2]} {hashlib.sha256(texts).hexdigest()}"

@@ -25,7 +25,9 @@ Paths = Mapping[str, Any]
 
 
 class StageRun:
-    """Run of a stage, to which a script tells its summary; `name` leads its line on the terminal."""
+    """Run of a stage, to which a script tells its summary; `name` leads its line on the terminal,
+    `text` is the summary.
+    """
 
     def __init__(self, name: str) -> None:
         self.name, self.text = name, ""
@@ -44,10 +46,12 @@ class StageRun:
 
 @dataclass(frozen=True)
 class Part:
-    """Extent of one manifest: a whole job, or one case of a job that makes several.
+    """Extent of one manifest: a whole job of Snakemake, or one case of a job that makes several.
 
     - rule: what the manifest calls it
     - wildcards: values of its wildcards, behind its name on the terminal
+    - input, output: paths, or lists of paths, by name; the manifest is among the outputs
+    - params: slice of the config as `needs`, fingerprint as `code`
     - rebuild: command that makes a target again
     """
 
@@ -65,7 +69,7 @@ class Part:
 
     @property
     def manifest(self) -> Path | None:
-        """Path of the manifest, if the rule writes one."""
+        """Path of the manifest among the outputs; None if the rule writes none."""
         return next(
             (Path(path) for path in _flatten_paths(self.output) if path.endswith(MANIFEST_SUFFIX)), None
         )
@@ -77,13 +81,16 @@ class Part:
 
 
 def _flatten_paths(paths: Paths) -> list[str]:
-    """Return all paths of a job in one list."""
+    """Return all paths in one list; `paths` holds a path or several under each name."""
     path_lists = [[path] if isinstance(path, str) else [*path] for path in paths.values()]
     return [str(path) for path_list in path_lists for path in path_list]
 
 
 def parts_of(snakemake: Any) -> list[Part]:
-    """Return the parts of a job of a stage: one, or one for each of `cases`, whose number ends its names.
+    """Split a job of a stage into parts with a manifest each: one, or one for each of its `cases`.
+
+    In a job of several cases the names of inputs and outputs end in `__n`, n being the number of the
+    case.
 
     Parameters
     ----------
@@ -115,13 +122,16 @@ def parts_of(snakemake: Any) -> list[Part]:
 
 
 def _ending(end: str, paths: Paths) -> Paths:
-    """Return the paths whose names end in `end`, by the names without this ending."""
+    """Return the paths whose names end in `end`, by their names without this ending."""
     return {name.removesuffix(end): path for name, path in paths.items() if name.endswith(end)}
 
 
 @contextmanager
 def stage(snakemake: Any) -> Iterator[StageRun]:
-    """Run the body of a script whose rule has one manifest, which covers all other outputs.
+    """Make a context around the body of a script whose rule has one manifest, which covers all other
+    outputs.
+
+    It joins `job` and `record_part`: lock, log, one-line errors, checked inputs, manifest.
 
     Parameters
     ----------
@@ -172,7 +182,10 @@ def job(snakemake: Any) -> Iterator[None]:
 
 
 def _hold(locks: ExitStack, path: Path, rule: str) -> None:
-    """Take a lock that is given back at the end; wait for a job that a killed run has left working."""
+    """Take the lock file at `path`, and give it back when `locks` closes.
+
+    While another job holds it, say so once and wait. A disk that cannot lock is used without.
+    """
     lock = FileLock(path)
     with suppress(OSError):  # a disk without locks
         try:
@@ -187,7 +200,11 @@ def _hold(locks: ExitStack, path: Path, rule: str) -> None:
 
 @contextmanager
 def record_part(part: Part) -> Iterator[StageRun]:
-    """Check the inputs of a part, have it made, and write its manifest.
+    """Make a context around the work on one part: check its inputs before, write its manifest after.
+
+    The old manifest and half-written files are removed first, so that a part that fails has no
+    manifest. Inputs below RESULTS must have a manifest. Without a summary from the script the names of
+    the files are the summary.
 
     Parameters
     ----------
@@ -226,7 +243,9 @@ def record_part(part: Part) -> Iterator[StageRun]:
 
 @contextmanager
 def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
-    """End a job with one line in its log in place of a traceback, for errors that a user may meet."""
+    """End a job with exit code 1 and one line on standard error for FacegearError and a full disk;
+    other errors go on.
+    """
     try:
         yield
     except (FacegearError, OSError) as error:
@@ -239,9 +258,7 @@ def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
 
 
 def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
-    """Return the same error; where a stored file is at fault, with the command that makes it again in this
-    run.
-    """
+    """Return the error; a CorruptFile gets the command that makes its file again in this run."""
     if not isinstance(error, CorruptFile):
         return error
     command = snakemake.config["rebuild_command"]
@@ -249,13 +266,15 @@ def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
 
 
 class _CopiedStream:
-    """Standard error that also goes to a log."""
+    """Stream in place of standard error that writes to the terminal and to a log file."""
 
     def __init__(self, log: BinaryIO) -> None:
         self.log, self.terminal = log, sys.stderr
 
     def write(self, text: str) -> int:
-        """Write text to the terminal and to the log."""
+        """Write text to the log, as far as the disk allows, and to the terminal; return the number of
+        characters.
+        """
         with suppress(OSError):  # a full disk must not keep the message from the terminal
             self.log.write(text.encode())
         return self.terminal.write(text)
@@ -267,7 +286,9 @@ class _CopiedStream:
 
 @contextmanager
 def _copy_output(log: BinaryIO) -> Iterator[None]:
-    """Copy standard error to a log, and a traceback to the log alone: Python prints it to the terminal."""
+    """Copy standard error to an open log while the block runs; a traceback goes to the log alone, as
+    Python prints it too.
+    """
     try:
         with redirect_stderr(_CopiedStream(log)):
             yield

@@ -61,7 +61,9 @@ class Source:
 
 
 def read_source(text: bytes, module: str, is_package: bool) -> Source:
-    """Read statements and imports of a module, without what does not affect its code.
+    """Parse a module into its statements, each with a hash of its code and the names that it uses.
+
+    Docstrings, the body of `if TYPE_CHECKING`, and `if __name__ == ...` are left out.
 
     Parameters
     ----------
@@ -75,7 +77,7 @@ def read_source(text: bytes, module: str, is_package: bool) -> Source:
     Returns
     -------
     Source
-        Statements, imports and imported modules.
+        Statements in their order, and imports from the packages that run when the module is imported.
     """
     package = module if is_package else module.rpartition(".")[0]
     walk = Walk(package)
@@ -107,7 +109,13 @@ def read_source(text: bytes, module: str, is_package: bool) -> Source:
 
 @dataclass(frozen=True)
 class _Scope:
-    """Names of a module: of statements, of imports from the packages and elsewhere, and for type checkers."""
+    """Names of a module, by where they come from.
+
+    - bound: names that its statements bind
+    - package_names: names that imports from the packages bind
+    - foreign: module and attribute of each name that other imports bind
+    - for_checkers: names that are imported for type checkers alone
+    """
 
     bound: set[str]
     package_names: set[str]
@@ -115,7 +123,11 @@ class _Scope:
     for_checkers: set[str]
 
     def counted_uses(self, part: Part) -> tuple[str, ...]:
-        """Return the names that a part uses and that count for its fingerprint, sorted."""
+        """Return the names used by a part that may lead to code of the packages, sorted.
+
+        Dotted names stay dotted for imports and are cut to their first part for names of the module. A
+        name that nothing explains becomes WHOLE_MODULE.
+        """
         local = {name for name, *_ in part.imports}
         counted_names = set()
         for use in part.uses:
@@ -136,14 +148,16 @@ class _Scope:
         return tuple(sorted(counted_names))
 
     def code(self, part: Part) -> str:
-        """Return the hash of a part's code, with the meaning of each name that it has from elsewhere."""
+        """Return the hash (16 hexadecimal digits) of a part's code and of the origin of each name from
+        other libraries.
+        """
         roots = {use.removeprefix(POSSIBLE_NAME).partition(".")[0] for use in part.uses}
         origins = [f"{name} {self.foreign[name]}" for name in sorted(roots & self.foreign.keys())]
         return hashlib.sha256("\n".join([*origins, *part.code]).encode()).hexdigest()[:16]
 
 
 def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> Statement:
-    """Return the record of a module's statement: names, code, uses and imports."""
+    """Return the Statement of a syntax node, given its part and the scope of the module."""
     signature = Part()
     if isinstance(statement, Function):
         signature = walk.collect_annotations(statement)
@@ -159,7 +173,7 @@ def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> 
 
 
 def _names(statement: ast.stmt, part: Part) -> set[str]:
-    """Return the names that a statement of the module binds or, as `table[key] = value` does, changes."""
+    """Return the names that a statement of the module binds, or changes as `table[key] = value` does."""
     match statement:
         case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
             return {statement.name}
@@ -173,7 +187,11 @@ def _names(statement: ast.stmt, part: Part) -> set[str]:
 
 
 def _runs(statement: ast.stmt, scope: _Scope) -> bool:
-    """Whether a statement may do more than bind its names: it calls ours, or is no definition."""
+    """Whether a statement may do more than bind its names when the module is imported.
+
+    It may if a default value, decorator or assigned value calls code of the packages, or if it is no
+    definition.
+    """
     if isinstance(statement, Function):
         defaults = [*statement.args.defaults, *statement.args.kw_defaults]
         is_changed = _calls_package_code(statement.decorator_list, scope, decorates=True)
@@ -190,7 +208,10 @@ def _runs(statement: ast.stmt, scope: _Scope) -> bool:
 
 
 def _calls_package_code(nodes: Iterable[ast.expr | None], scope: _Scope, decorates: bool = False) -> bool:
-    """Whether expressions call what may be ours; decorators are called without parentheses."""
+    """Whether one of the expressions calls a name of the module or of the packages.
+
+    With `decorates` an expression itself counts as called, as a decorator without parentheses is.
+    """
     for node in nodes:
         if node is None:
             continue

@@ -52,19 +52,20 @@ def is_in_packages(module: str) -> bool:
 
 
 def find_imports(node: ast.AST, package: str) -> Iterator[Import]:
-    """Yield what an import binds; nothing of other nodes.
+    """Yield what an import binds, one tuple a name; nothing for a node that is no import.
 
     Parameters
     ----------
     node : ast.AST
         Any node.
     package : str
-        Package of its module.
+        Dotted name of the package of its module, from which relative imports count.
 
     Yields
     ------
     tuple of str
-        Bound name (``*`` for all), module, and name in the module.
+        Bound name (``*`` for all, empty for the submodule of ``import a.b``), module, and name in the
+        module (empty for the module itself).
     """
     if isinstance(node, ast.Import):
         for alias in node.names:
@@ -124,10 +125,11 @@ def is_guard(statement: ast.stmt, name: str) -> bool:
 
 @dataclass
 class Part:
-    """Code and names of one statement.
+    """Code and names of one statement, as `Walk` collects them.
 
-    - code: kinds of its nodes, with names and values, in their order
-    - uses: names that it reads, with the attributes behind them
+    - code: kinds of its syntax nodes, with names and values, in their order; equal lists mean equal
+      code
+    - uses: dotted names that it reads (`a.b.c`), and marks WHOLE_MODULE, NAMED_MODULE and POSSIBLE_NAME
     - bound: names that it binds, in any scope
     - imports: imports from the packages in it
     """
@@ -139,7 +141,9 @@ class Part:
 
 
 class Walk:
-    """Walk through statements of a module that lies in `package`."""
+    """Walk through the syntax trees of statements of a module in `package`; the methods write into
+    `part`.
+    """
 
     def __init__(self, package: str) -> None:
         self.package = package
@@ -147,8 +151,8 @@ class Walk:
         self.in_class = False
 
     def collect(self, statement: ast.stmt) -> Part:
-        """Return the code of a statement without docstrings and comments, and the names that it binds and
-        uses.
+        """Return the code of a statement without docstrings and comments, and the names that it binds
+        and uses.
 
         Parameters
         ----------
@@ -158,7 +162,7 @@ class Walk:
         Returns
         -------
         Part
-            Its code and names.
+            Its code and names; a new one for each call.
         """
         self.part = part = Part()
         self.visit(statement)
@@ -182,7 +186,8 @@ class Walk:
         return part
 
     def visit(self, node: ast.AST) -> None:
-        """Record a syntax node and all nodes inside it.
+        """Record a syntax node and all nodes inside it, by the method that METHODS gives for its kind,
+        or field by field.
 
         Parameters
         ----------
@@ -224,7 +229,9 @@ class Walk:
             self.part.bound.add(node.id)
 
     def _visit_attribute(self, node: ast.Attribute) -> None:
-        """Record a dotted name, and each part of it as used."""
+        """Record a dotted name such as `a.b.c` as one use; behind an expression that is no name, visit
+        that expression.
+        """
         chain: list[str] = []
         root: ast.expr = node
         while isinstance(root, ast.Attribute):
@@ -238,13 +245,17 @@ class Walk:
             self.visit(root)
 
     def _use(self, name: str) -> None:
-        """Record the use of a name; a dynamic look-up uses the whole module."""
+        """Record the use of a dotted name; a function of DYNAMIC or `sys.modules` uses the whole
+        module.
+        """
         if name in DYNAMIC or name == "sys.modules" or name.startswith("sys.modules."):
             self.part.uses.add(WHOLE_MODULE)
         self.part.uses.add(name)
 
     def _visit_call(self, node: ast.Call) -> None:
-        """Record a call; an import by name uses the named module, or anything if the name is computed."""
+        """Record a call. `import_module("package.module")` uses that module; with a computed name it
+        uses the whole module.
+        """
         if "import_module" in (getattr(node.func, "id", ""), getattr(node.func, "attr", "")):
             match node.args:
                 case [ast.Constant(str(module))] if is_in_packages(module):
@@ -291,21 +302,25 @@ class Walk:
             self.visit(node.value)
 
     def _visit_annotation(self, node: ast.expr) -> None:
-        """Record the names in an annotation; strings in it may name types or be values of a `Literal`."""
+        """Record an annotation; every word of a string in it is a possible name, as it may name a type
+        or be a `Literal`.
+        """
         self.visit(node)
         for inner in ast.walk(node):
             if isinstance(inner, ast.Constant) and isinstance(inner.value, str):
                 self.part.uses |= {f"{POSSIBLE_NAME}{word}" for word in re.findall(r"[\w.]+", inner.value)}
 
     def _visit_annotations(self, node: Function) -> None:
-        """Record the annotations of a function's arguments and result."""
+        """Record the annotations of a function's arguments, not of its result."""
         for argument in _arguments(node.args):
             if argument.annotation:
                 self.part.code.append(argument.arg)
                 self._visit_annotation(argument.annotation)
 
     def _visit_class(self, node: ast.ClassDef) -> None:
-        """Record a class with decorators, bases and body; names that its body binds are its own."""
+        """Record a class with decorators, bases, keywords and body; its fields count with their
+        annotations.
+        """
         self.part.code.append(f"class {node.name}")
         self.part.bound.add(node.name)
         for part in (node.decorator_list, node.bases, node.keywords):
@@ -315,8 +330,10 @@ class Walk:
         self.in_class = outer
 
     def _visit_function(self, node: Function) -> None:
-        """Record a function; names that the outermost function binds are local everywhere in it, unless
-        declared `global`.
+        """Record a function with decorators, arguments and body.
+
+        Names that the body binds are local and count as no use of the module, unless declared `global`.
+        Annotations count only if a decorator outside UNREAD may read them.
         """
         self.part.code.append(f"{type(node).__name__} {node.name}")
         self.part.bound.add(node.name)
@@ -352,9 +369,7 @@ class Walk:
                 self.visit(default)
 
     def _visit_caught(self, node: ast.ExceptHandler) -> None:
-        """Add an except clause with its type and body to the part's code and uses, and its name to the bound
-        names.
-        """
+        """Record an except clause: type, body, and the name that it binds."""
         self.part.bound.add(node.name or "")
         self.part.code.append(f"except {node.name}")
         if node.type:
@@ -392,7 +407,9 @@ METHODS: Mapping[type, Callable[..., None]] = {
 
 
 def _last_name(decorator: ast.expr) -> str:
-    """Return the last part of a decorator's dotted name."""
+    """Return the last part of a decorator's dotted name, such as `cache` of `functools.cache(...)`;
+    empty if it has none.
+    """
     node = decorator.func if isinstance(decorator, ast.Call) else decorator
     return str(getattr(node, "attr", getattr(node, "id", "")))
 
@@ -404,7 +421,12 @@ def _arguments(node: ast.arguments) -> list[ast.arg]:
 
 
 def _local_names(function: Function) -> set[str]:
-    """Return the names that a function binds in its own scope."""
+    """Return the names that a function binds in its own scope: arguments, assignments, inner functions
+    and classes.
+
+    Names declared `global` or `nonlocal` are not among them; lambdas and comprehensions have scopes of
+    their own.
+    """
     names = {argument.arg for argument in _arguments(function.args)}
     elsewhere: set[str] = set()
     todo: list[ast.AST] = [*function.body]

@@ -25,7 +25,10 @@ Source = Literal["computed", "stored"]
 
 @dataclass(frozen=True, eq=False)
 class StageOutput:
-    """Output of a stage: parts by name, one line, whether it was computed now or stored by the workflow."""
+    """Output of a stage: content of its files by name, its line of summary, and where it came from.
+
+    `source` is `computed` if it was computed in this session, `stored` if it was read from files.
+    """
 
     content: Mapping[str, Any]
     summary: str
@@ -34,13 +37,17 @@ class StageOutput:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """One stage's results; `source` says whether they were computed now or stored by the workflow.
+    """Result of one stage, as an answer of a gearbox; `source` says whether it was computed now or
+    stored by the workflow.
 
-    Its tables are pandas frames; the unit of a column stands at the end of its name (`_um`, `_n_per_m`), and
-    a column without one is a name, a count, a fraction or a ratio.
+    Its tables are pandas frames; the unit of a column stands at the end of its name (`_um`,
+    `_n_per_m`), and a column without one is a name, a count, a fraction or a ratio. Methods return
+    copies.
 
     - STAGE: name of the stage
-    - BESIDE: parts that are shown with them, each from a file of another stage
+    - BESIDE: further parts of `content` by name, each from a stage and its file, which figures need
+    - content: tables, arrays and records by name of the stage's file
+    - values: plain values of the whole config
     """
 
     STAGE: ClassVar[str]
@@ -89,22 +96,26 @@ class Result:
             return write_workbook(path, self._sheets())
 
     def _sheets(self) -> dict[str, pd.DataFrame]:
-        """Return the tables of a workbook by the names of its sheets."""
+        """Return the tables of a workbook by the names of its sheets: all parts of `content` that are
+        data frames.
+        """
         return {name: part for name, part in self.content.items() if isinstance(part, pd.DataFrame)}
 
     def __repr__(self) -> str:
+        """Return class, source and summary in one line."""
         return f"{type(self).__name__}({self.source}: {self.summary})"
 
 
 def require_answers(beside: object, kind: type[Result]) -> None:
-    """Refuse what is not answers of one kind by label, as figures of several gearboxes take them.
+    """Refuse `beside` unless it maps labels to results of one class, as figures of several gearboxes
+    need them.
 
     Parameters
     ----------
     beside : mapping of str to Result
-        Answers of other gearboxes by label.
+        What a user gave as results of other gearboxes by label.
     kind : type
-        Class of the answers.
+        Class that each result must have.
 
     Raises
     ------
@@ -126,17 +137,20 @@ KEYWORDS_TEXT = """
 
 
 def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
-    """Give a method that describes a figure the keywords `size` and `labels`, and draw what it describes.
+    """Decorate a method that describes a figure, so that it draws the figure and takes the keywords
+    `size` and `labels`.
 
     Parameters
     ----------
     plot : callable
-        Method of an answer that returns the description of a figure.
+        Method of a result that returns the description of a figure (`Figure`), independent of any
+        library.
 
     Returns
     -------
     callable
-        A method with two more keywords that returns a figure of matplotlib; its `describe` is the given one.
+        A method that returns a matplotlib figure. `size` is width and height in inches, `labels` maps
+        texts of the figure to other ones. Attribute `describe` is the given method.
     """
 
     @wraps(plot)
@@ -148,6 +162,9 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
         **keywords: Any,
     ) -> "MplFigure":
         # matplotlib: a second that only drawing needs
+        """Draw what the method describes with matplotlib, at `size` (inches; None for the default),
+        with texts replaced by `labels`.
+        """
         from facegear.report.figures.draw_matplotlib import draw, rename_texts
 
         if size is not None and not _is_size(size):
@@ -169,7 +186,7 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
 
 
 def _is_size(size: object) -> bool:
-    """Whether a value is two numbers above 0."""
+    """Whether a value is a pair of finite numbers above 0, such as width and height in inches."""
     return (
         isinstance(size, Sequence)
         and len(size) == 2

@@ -28,11 +28,14 @@ Kind = TypeVar("Kind", bound=Result)
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Stages of a case, computed without files as the workflow's rules compute them.
+    """Stages of one case, computed in this process without files, each with the stages that it takes
+    from.
 
-    `values` are those of a whole config, `store` the store of results. `cases`: all cases of the config by
-    their id, for the stages that set those of its studies side by side. A stage is imported where it runs, so
-    that modes load no mesh and no compiler.
+    - values: plain values of the whole config
+    - store: memory and files in which results are looked for before they are computed
+    - cases: all cases of the config by their id, for stages that set those of its studies side by side
+
+    A stage is imported where it runs, so that modes load no mesh and no compiler.
     """
 
     values: Mapping[str, Any]
@@ -46,14 +49,14 @@ class Chain:
         return Case(self.values, cases, lambda stage, case: shared_sources(cases, stage)[case])
 
     def result(self, kind: type[Kind], **extra_arguments: Any) -> Kind:
-        """Return the result of the stage of a kind of result.
+        """Return the stage's output as an object of the class of results, computed if it is not known.
 
         Parameters
         ----------
         kind : type[Kind]
-            Class of the result.
+            Class of the result; its STAGE and BESIDE say what is read.
         **extra_arguments : Any
-            Arguments that decide no number, as threads.
+            Arguments of the stage's function that decide no number, such as `threads`.
 
         Returns
         -------
@@ -65,14 +68,14 @@ class Chain:
         return kind({**output.content, **beside}, output.summary, output.source, self.values)
 
     def output(self, name: str, **extra_arguments: Any) -> StageOutput:
-        """Return all that a stage gives, and where it came from.
+        """Return all files of a stage, computed if they are not known, and where they came from.
 
         Parameters
         ----------
         name : str
             Name of the stage.
         **extra_arguments : Any
-            Arguments that decide no number, as threads.
+            Arguments of the stage's function that decide no number, such as `threads`.
 
         Returns
         -------
@@ -82,7 +85,8 @@ class Chain:
         return self.store.output(name, self.values, lambda: self.compute(name, **extra_arguments))
 
     def arguments(self, name: str) -> dict[str, Any]:
-        """Return all arguments of a stage, from the config and from earlier stages.
+        """Return all arguments of a stage, from the config and from earlier stages, which are computed
+        if they are not known.
 
         Parameters
         ----------
@@ -98,7 +102,8 @@ class Chain:
         return {**self.upstream_arguments(stage.upstream), **resolved_needs(stage.needs, self.case)}
 
     def upstream_arguments(self, upstream: Mapping[str, From]) -> dict[str, Any]:
-        """Return the arguments that come from earlier stages.
+        """Return the arguments that are files of earlier stages, which are computed if they are not
+        known.
 
         Parameters
         ----------
@@ -108,13 +113,14 @@ class Chain:
         Returns
         -------
         dict[str, Any]
-            Arguments by name.
+            Tables, arrays or records by name of the argument, a list where a source stands for several
+            files; arguments that the case does not need are left out.
         """
         needed_sources = {key: source for key, source in upstream.items() if source.is_needed(self.case)}
         return {key: self._read_source(source) for key, source in needed_sources.items()}
 
     def compute(self, name: str, wildcards: Wildcards = NO_WILDCARDS, **extra_arguments: Any) -> "Outcome":
-        """Compute a stage now.
+        """Compute a stage now, without a look into the store; earlier stages still come from it.
 
         Parameters
         ----------
@@ -123,18 +129,18 @@ class Chain:
         wildcards : Wildcards
             Text of each wildcard by name.
         **extra_arguments : Any
-            Arguments that decide no number, as threads.
+            Arguments of the stage's function that decide no number, such as `threads`.
 
         Returns
         -------
         Outcome
-            What the stage gives.
+            Content of the stage's files by name, and one line about it.
         """
         stage = STAGES[name]
         return call(stage, self.arguments(name), **stage.typed_wildcards(wildcards), **extra_arguments)
 
     def part(self, name: str, file: str, wildcards: Wildcards = NO_WILDCARDS) -> Any:
-        """Return the content of one file of a stage.
+        """Return the content of one file of a stage, computed if it is not known.
 
         Parameters
         ----------
@@ -143,7 +149,7 @@ class Chain:
         file : str
             Name of the file.
         wildcards : Wildcards
-            Text of each wildcard by name.
+            Text of each wildcard by name, for stages that write such a file more than once.
 
         Returns
         -------
@@ -157,7 +163,9 @@ class Chain:
         )
 
     def _read_source(self, source: From) -> Any:
-        """Return the content of an earlier stage's file, or a list of contents for several cases."""
+        """Return the content of the file of an earlier stage, of another case if its wildcards name
+        one; a list for several files.
+        """
         parts = [
             self._of(wildcards.get("case")).part(source.stage, source.file, _without_case(wildcards))
             for wildcards in source.file_wildcards(self.case)
@@ -165,7 +173,9 @@ class Chain:
         return parts if source.each_wildcards else parts[0]
 
     def _of(self, case: str | None) -> "Chain":
-        """Return the chain of another case of the same config; this chain without a name."""
+        """Return the chain of another case of the same config, with its own folder in the store; this
+        chain for None.
+        """
         chain = self.values["case"]
         if case is None or case == chain:
             return self
@@ -178,7 +188,7 @@ class Chain:
 
 
 def _without_case(wildcards: Wildcards) -> dict[str, str]:
-    """Return wildcards without that of the case."""
+    """Return wildcards without `case`, which names a case and is no wildcard of a stage."""
     return {name: text for name, text in wildcards.items() if name != "case"}
 
 
@@ -222,7 +232,9 @@ def summary_text(chain: Chain) -> str:
 
 
 def _known_tables(chain: Chain) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield the tables of the report that were computed in this session or are stored and current."""
+    """Yield name and content of each table of the report that is known in this session, or stored and
+    up to date.
+    """
     for name, files in REPORT_TABLES.items():
         if not asked_for(name, chain.case):
             continue
@@ -239,12 +251,14 @@ class _NotKnownError(Exception):
 
 
 def _refuse_to_compute() -> Never:
-    """Raise the error that stands for a result which is not stored."""
+    """Raise _NotKnownError; it stands in the place of a computation where only known results are
+    wanted.
+    """
     raise _NotKnownError
 
 
 def _align_columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Return rows of text with their columns below each other."""
+    """Return rows of texts as lines, each column padded to its widest cell, two spaces between columns."""
     widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
     return [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows

@@ -19,16 +19,19 @@ if TYPE_CHECKING:
 
 
 def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
-    """Return pressures over torque_n_m, position, pair and plane.
+    """Arrange the pressures of contact lines as arrays over torque_n_m, position, pair and plane.
 
-    `pressure_mpa`, `pressure_error_mpa` and `half_width_mm`: nan unless inside; `line_load_n_per_mm`: zero
-    where unloaded; `where`: one of EDGES, empty where unloaded. Coordinates `pinion_radius_mm` (position,
-    pair, plane) and `axial_mm` (plane) place the contact lines on the pinion's flank.
+    `position` is a fraction of a pitch, `pair` the number of a tooth pair (0, and neighbours), `plane`
+    a plane across the pinion's axis. `pressure_mpa`, `pressure_error_mpa` and `half_width_mm` are nan
+    unless the plane is loaded away from edges; `line_load_n_per_mm` is zero where unloaded; `where` is
+    one of EDGES, empty where unloaded. Coordinates `pinion_radius_mm` (position, pair, plane), distance
+    from the pinion's axis, and `axial_mm` (plane), place along it, put the contact lines on the
+    pinion's flank.
 
     Parameters
     ----------
     arrays : Arrays
-        Arrays as PRESSURE_ARRAYS.
+        Arrays `pressure` of stage contact (PRESSURE_ARRAYS): one row for each loaded plane.
 
     Returns
     -------
@@ -46,11 +49,15 @@ def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
     inside = arrays["line_where"] == EDGES.index("inside")
 
     def spread(values: AnyArray, rest: float | str) -> tuple[tuple[str, ...], AnyArray]:
+        """Put one value a loaded plane into an array (torques, positions, pairs, planes), `rest`
+        elsewhere; return its axes and it.
+        """
         array = np.full(shape, rest, dtype=object if isinstance(rest, str) else float)
         array[cells] = values
         return ("torque_n_m", "position", "pair", "plane"), array.astype(str) if rest == "" else array
 
     def variable(name: str, scale: float) -> tuple[tuple[str, ...], AnyArray]:
+        """Spread a quantity times `scale`, nan for planes that are loaded near an edge or not at all."""
         return spread(np.where(inside, scale * arrays[name], np.nan), np.nan)
 
     lines = np.hypot(points[..., 0], points[..., 2]).reshape(*shape[1:])
@@ -73,12 +80,19 @@ def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
 
 
 class ContactResult(Result):
-    """Transmission error, stiffness, load shares and pressures at every position and torque."""
+    """Loaded contact of one mesh: transmission error, stiffness, load shares and pressures by position
+    and torque.
+    """
 
     STAGE: ClassVar = "contact"
 
     def table(self) -> pd.DataFrame:
         """One row a torque and position; columns in docs/reference/stages.md.
+
+        Torques are on the pinion, position is a fraction of a pitch. ste_um is the transmission error
+        along the line of action, backlash taken up on the drive side. k_average is force / (STE -
+        unloaded STE), k_local d force / d STE. load_share_pair_m1 is the share of the torque of the
+        pair one tooth behind, p1 one ahead. Residuals are relative.
 
         Columns: torque_n_m, position, ste_um, unloaded_ste_um, k_average_n_per_m, k_local_n_per_m,
         pairs_in_contact, load_share_pair_m2, load_share_pair_m1, load_share_pair_0, load_share_pair_p1,
@@ -110,13 +124,16 @@ class ContactResult(Result):
         return self.content["by_torque"].copy()
 
     def imprint(self) -> pd.DataFrame:
-        """One row a torque: length of the contact imprint along the face, over the gear's face width, its
-        middle. Planes across the pinion's axis that carry load count with the width that each stands for.
+        """Measure the contact imprint along the face, one row a torque.
+
+        A loaded plane across the pinion's axis counts half way to its neighbours, within the gear's
+        face.
 
         Returns
         -------
         pd.DataFrame
-            The table.
+            Columns torque_n_m, length_mm, over_face_width (length over the gear's face width) and
+            middle_mm (from the gear's axis).
         """
         gear = self.values["tooth_pair"]["face_gear"]
         ends = 1e-3 * gear["inner_radius_mm"], 1e-3 * gear["outer_radius_mm"]
@@ -176,13 +193,17 @@ class ContactResult(Result):
 
 
 class StiffnessResult(Result):
-    """k(t) that the lumped model uses."""
+    """Mesh stiffness k(t) of one mesh over a pitch, which the lumped model takes as a Fourier series."""
 
     STAGE: ClassVar = "stiffness"
 
     def table(self) -> pd.DataFrame:
-        """Orders kept of k = sum of sin_n_per_m sin(j w t) + cos_n_per_m cos(j w t), with the errors of
-        cutting and sampling.
+        """One row an order j kept of k = sum of sin_n_per_m sin(j w t) + cos_n_per_m cos(j w t), w the
+        mesh frequency.
+
+        `truncation_error_n_per_m` is what orders above j amount to, `sampling_error_n_per_m` what the
+        number of positions does; `e_*` are the same of the unloaded transmission error; means of both
+        definitions are equal in all rows.
 
         Columns: order, sin_n_per_m, cos_n_per_m, amplitude_n_per_m, truncation_error_n_per_m,
         sampling_error_n_per_m, e_sin_um, e_cos_um, e_peak_to_peak_um, e_truncation_error_um,
@@ -196,7 +217,7 @@ class StiffnessResult(Result):
         return self.content["harmonics"].copy()
 
     def curve(self) -> pd.DataFrame:
-        """k over a pitch and the series kept of it, N/m.
+        """k over a pitch (position 0 to 1) as computed, and by the series kept of it, N/m.
 
         Columns: position, k_n_per_m, k_series_n_per_m.
 
@@ -210,13 +231,13 @@ class StiffnessResult(Result):
     def over_angle(self, points: int = 64) -> pd.DataFrame:
         """Return k over the angle of the pinion in one of its pitches.
 
-        The series is the one that is kept, of a mesh that is in its reference phase at angle 0; for programs
-        that take a curve where this one takes Fourier orders.
+        The series is the one that is kept, of a mesh that is in its reference phase at angle 0; for
+        programs that take a curve where this one takes Fourier orders.
 
         Parameters
         ----------
         points : int
-            Number of angles.
+            Number of evenly spaced angles.
 
         Returns
         -------
@@ -250,12 +271,18 @@ class StiffnessResult(Result):
 
 
 class MeshLawResult(Result):
-    """Force of every flank over phase and deflection, as contact gives it."""
+    """Load-dependent mesh law: force of every flank over mesh phase and deflection, as contact gives
+    it.
+    """
 
     STAGE: ClassVar = "mesh_law"
 
     def table(self) -> pd.DataFrame:
-        """Mean force and slope at every level, with the error of the table against contact between levels.
+        """Mean force and slope over a pitch at every level of deflection, by gear and flank.
+
+        `table_rms_percent` and `table_largest_percent` are the errors of the fitted table against
+        contact between levels, in percent of the mean force at the last level. torque_n_m on the pinion
+        belongs to force_n.
 
         Columns: gear, flank, deflection_um, torque_n_m, force_n, slope_n_per_m, table_rms_percent,
         table_largest_percent.
@@ -268,12 +295,13 @@ class MeshLawResult(Result):
         return self.content["levels"].copy()
 
     def arrays(self) -> dict[str, AnyArray]:
-        """Return the Fourier series of force and slope at every level, as `stiffness/law.npz` holds them.
+        """Return the Fourier series over mesh phase of force and slope at every level of deflection, as
+        `stiffness/law.npz` holds them.
 
         Returns
         -------
         dict[str, AnyArray]
-            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables, levels, 2,
-            orders) in N and N/m, table of each flank (2, 2).
+            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables,
+            levels, 2, orders) in N and N/m, table of each flank (2, 2).
         """
         return {name: values.copy() for name, values in self.content["law"].items()}

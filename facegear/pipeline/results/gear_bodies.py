@@ -10,12 +10,17 @@ from facegear.report.figures.turning_machine import body_shapes, machine_campbel
 
 
 class GearBodiesResult(Result):
-    """Modes and compliance of the face gears that bend, with their hubs held."""
+    """Modes and compliance of the face gears that bend, with their hubs fixed."""
 
     STAGE: ClassVar = "gear_bodies"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode: gear, nodal diameters, frequency at rest, waves in space, resonant speeds.
+        """One row a mode: gear, nodal diameters, frequency at rest, waves in space, speeds at which it
+        meets a mesh harmonic.
+
+        forward_hz and backward_hz are its waves at the pinion speed speed_rpm; forward_met_rpm and
+        backward_met_rpm are pinion speeds of resonance; frequency_change is the relative numerical
+        error of the frequency.
 
         Columns: gear, nodal_diameters, mode, frequency_hz, round_fraction, gyroscopic_factor,
         stiffening_factor, damping_ratio, hub_axial_sqrt_kg, hub_spin_sqrt_kg_m, hub_sideways_sqrt_kg,
@@ -59,7 +64,11 @@ class GearBodiesResult(Result):
         return modes[[*columns, "stiffening_factor", "damping_ratio", *couplings]].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """One row a gear: mass and inertia of its section, compliance at a mesh, numerical error.
+        """One row a gear: mass and inertia of its section, compliance at a mesh along the line of
+        action, numerical error.
+
+        modal_fraction of that compliance is in the modes; left_out_* are magnitudes of compliances that
+        they leave out.
 
         Columns: gear, mass_kg, inertia_kg_m2, diametral_inertia_kg_m2, elements, coordinates,
         own_compliance_m_per_n, modal_fraction, left_out_between_flanks_m_per_n,
@@ -73,7 +82,10 @@ class GearBodiesResult(Result):
         return self.content["bodies"].copy()
 
     def crossings(self) -> pd.DataFrame:
-        """One row a speed at which a mesh harmonic meets a wave, with how the meshes' phases add up.
+        """One row a pinion speed at which a mesh harmonic meets a wave.
+
+        phase_factor is how many times the force of one mesh drives the wave if all carry the same
+        force, 0 where they cancel.
 
         Columns: gear, nodal_diameters, mode, wave, harmonic, speed_rpm, frequency_hz, phase_factor.
 
@@ -85,7 +97,8 @@ class GearBodiesResult(Result):
         return self.content["crossings"].copy()
 
     def compliance(self) -> pd.DataFrame:
-        """One row a gear and order: motions below a mesh by unit forces.
+        """One row a gear and order of nodal diameters: motions below a mesh, axial and round the axis,
+        by unit forces there.
 
         Columns: gear, order, axial_m_per_n, round_m_per_n, axial_round_m_per_n.
 
@@ -97,7 +110,8 @@ class GearBodiesResult(Result):
         return self.content["compliance"].copy()
 
     def influence(self) -> pd.DataFrame:
-        """One row for two flanks of a gear: motion of the first against its force, by 1 N on the second.
+        """One row for two flanks of a gear: motion of the first against its own force, by 1 N on the
+        second, hub fixed.
 
         Columns: gear, first, first_flank, second, second_flank, compliance_m_per_n.
 
@@ -126,7 +140,8 @@ class GearWavesResult(Result):
     STAGE: ClassVar = "gear_waves"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode, gear and nodal diameters: frequency, damping, energy, how much travels forward.
+        """One row a mode, gear and nodal diameters: frequency, damping, energy, how much of it travels
+        forward.
 
         Columns, among others: order, frequency_hz, damping_ratio.
 
@@ -138,7 +153,8 @@ class GearWavesResult(Result):
         return self.content["waves"].copy()
 
     def campbell(self) -> pd.DataFrame:
-        """One row a speed and mode: frequency, damping, the waves with most of its energy, and its line.
+        """One row a pinion speed and mode: frequency, damping, waves with most of its energy, and the
+        line that it belongs to.
 
         Columns, among others: speed_rpm, line, frequency_hz.
 
@@ -150,7 +166,10 @@ class GearWavesResult(Result):
         return self.content["campbell"].copy()
 
     def crossings(self) -> pd.DataFrame:
-        """One row a speed at which a mesh harmonic meets a mode, with how the meshes' phases add up.
+        """One row a pinion speed at which a mesh harmonic meets a mode.
+
+        phase_factor is how many times the force of one mesh drives it if all carry the same force, 0
+        where they cancel.
 
         Columns, among others: line, speed_rpm, phase_factor.
 

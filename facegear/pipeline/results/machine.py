@@ -14,12 +14,17 @@ from facegear.report.figures.turning_machine import shaft_order_figure
 
 
 class ModesResult(Result):
-    """Natural frequencies, classes and shapes with the mean mesh stiffness, and the contacts they keep."""
+    """Undamped modes with constant mesh stiffness: frequencies, classes and shapes, and the contacts
+    that are closed in them.
+    """
 
     STAGE: ClassVar = "modal"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode: order, frequency_hz, what moves (symbols), class.
+        """One row a mode: natural frequency, what moves (symbols), class of the mode.
+
+        `decided` is False where the frequency differs between undecided contacts taken as open and as
+        closed.
 
         Columns: order, frequency_hz, multiplicity, symbols, class, pinion_energy_fraction, decided.
 
@@ -31,7 +36,8 @@ class ModesResult(Result):
         return self.content["frequencies"].copy()
 
     def shapes(self) -> pd.DataFrame:
-        """One row a mode, body and degree of freedom.
+        """One row a mode, body and degree of freedom: amplitude for unit modal mass, and relative to
+        the mode's largest.
 
         Columns: order, body, dof, amplitude_m_or_rad, relative.
 
@@ -44,6 +50,9 @@ class ModesResult(Result):
 
     def contacts(self) -> pd.DataFrame:
         """One row a mesh and a bearing with clearance: state under load, force, stiffness and its kind.
+
+        The state of a mesh is drive, back, wedged (both flanks), open or undecided. Forces are negative
+        on the back flank.
 
         Columns: contact, state, force_n, stiffness_n_per_m, definition.
 
@@ -72,7 +81,8 @@ class StaticsResult(Result):
     STAGE: ClassVar = "ratings"
 
     def table(self) -> pd.DataFrame:
-        """One row a mesh: flank, force_n (negative on the back flank), pinion_torque_n_m, power_kw.
+        """One row a mesh: loaded flank, force along the line of action (negative on the back flank),
+        torque, power to the gear.
 
         Columns: mesh, flank, force_n, pinion_torque_n_m, power_kw.
 
@@ -114,10 +124,13 @@ class ShaftsResult(Result):
     STAGE: ClassVar = "shafts"
 
     def table(self) -> pd.DataFrame:
-        """One row a pinion with a shaft: stiffness without moments, displacement and slope under load.
+        """One row a pinion with a shaft: stiffness of its seat without moments, displacement and slope
+        under load.
 
-        Columns: pinion, stiffness_x_n_per_m, stiffness_y_n_per_m, stiffness_z_n_per_m, x_um, y_um, z_um,
-        tilt_x_urad, tilt_y_urad.
+        The seat is where the teeth are. x is tangential, y along the gears' axis, z along the pinion.
+
+        Columns: pinion, stiffness_x_n_per_m, stiffness_y_n_per_m, stiffness_z_n_per_m, x_um, y_um,
+        z_um, tilt_x_urad, tilt_y_urad.
 
         Returns
         -------
@@ -127,7 +140,8 @@ class ShaftsResult(Result):
         return self.content["seats"].copy()
 
     def stiffness(self) -> pd.DataFrame:
-        """Five rows a pinion with a shaft: its stiffness in x, y, z, tilt_x, tilt_y.
+        """Five rows a pinion with a shaft: the matrix (5, 5) of its seat's stiffness in x, y, z,
+        tilt_x, tilt_y, N, m and rad.
 
         Columns: pinion, motion, x, y, z, tilt_x, tilt_y.
 
@@ -139,7 +153,8 @@ class ShaftsResult(Result):
         return self.content["stiffness"].copy()
 
     def bearings(self) -> pd.DataFrame:
-        """One row a bearing of a shaft: its forces and moments.
+        """One row a bearing of a shaft: forces and moments of the shaft on it under the mean torques,
+        and the radial force.
 
         Columns: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
 
@@ -151,7 +166,8 @@ class ShaftsResult(Result):
         return self.content["bearings"].copy()
 
     def torsion(self) -> pd.DataFrame:
-        """One row a turning mass: its spring, twist under load, natural frequencies of its chain.
+        """One row a turning mass: its spring, twist of it and windup to the body under load, natural
+        frequencies of its chain.
 
         Columns: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m, twist_deg, windup_deg,
         frequency_hz.
@@ -164,7 +180,8 @@ class ShaftsResult(Result):
         return self.content["torsion"].copy()
 
     def deflections(self) -> pd.DataFrame:
-        """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load.
+        """Rows along each shaft: distance at_mm from its inner end, displacements x_um (tangential) and
+        y_um under mean load.
 
         Columns: pinion, at_mm, x_um, y_um.
 
@@ -201,7 +218,11 @@ class ShaftOrdersResult(Result):
     STAGE: ClassVar = "shaft_orders"
 
     def table(self) -> pd.DataFrame:
-        """One row an order of a gear's turns and mesh: frequency, error, force running and turned slowly.
+        """One row an order of a gear's turns and mesh: amplitudes of the flank's error and of the
+        elastic force.
+
+        `turning` names the gears; of_mesh is the frequency over the mesh frequency; force_at_rest_n is
+        the force turned slowly.
 
         Columns: turning, order, of_mesh, frequency_hz, mesh, error_um, force_n, force_at_rest_n.
 
@@ -213,7 +234,8 @@ class ShaftOrdersResult(Result):
         return self.content["orders"].copy()
 
     def over_speed(self) -> pd.DataFrame:
-        """One row a speed and one of the largest orders: the mesh with the largest force.
+        """One row a pinion speed and one of the largest orders: the mesh with the largest force,
+        amplitude in N.
 
         Columns: speed_rpm, turning, order, of_mesh, frequency_hz, mesh, force_n.
 
@@ -254,18 +276,24 @@ class ShaftOrdersResult(Result):
 
 
 class OperatingPoseResult(Result):
-    """Pose of every mesh under the machine's mean torques, and what contact makes of it."""
+    """Pose of every mesh under the machine's mean torques, and the contact there beside that as
+    assembled.
+    """
 
     STAGE: ClassVar = "operating_pose"
 
     def table(self) -> pd.DataFrame:
-        """One row a mesh: force, pose, unloaded and loaded path, distance to the ends of the face.
+        """One row a mesh: force, pose, unloaded and loaded path, distance to the ends of the face and
+        of the pattern to edges.
 
-        And what the pose alone changes of stiffness, transmission error, pressure and root stress, percent.
+        Pinion-side paths are places along its axis; percentages tell what the pose alone changes of
+        stiffness, transmission error, pressure and root stress; stiffness_factor is the stiffness over
+        the machine's own.
 
-        Columns, among others: force_n, force_as_assembled_n, torque_n_m, tangential_force_n, axial_force_n,
-        overturning_moment_n_m, offset_um, axial_shift_um, shaft_angle_error_deg, outward_um, closing_um,
-        unloaded_path_mm, to_inner_end_mm, to_outer_end_mm, stiffness_factor, mesh, flank.
+        Columns, among others: force_n, force_as_assembled_n, torque_n_m, tangential_force_n,
+        axial_force_n, overturning_moment_n_m, offset_um, axial_shift_um, shaft_angle_error_deg,
+        outward_um, closing_um, unloaded_path_mm, to_inner_end_mm, to_outer_end_mm, stiffness_factor,
+        mesh, flank.
 
         Returns
         -------
@@ -275,7 +303,8 @@ class OperatingPoseResult(Result):
         return self.content["meshes"].copy()
 
     def loads(self) -> pd.DataFrame:
-        """One row a mesh and fraction of the torques: force, paths, stiffness over the machine's own.
+        """One row a mesh and fraction of the mean torques: force, paths (mm along the pinion),
+        stiffness over the machine's own.
 
         Columns, among others: load_fraction, unloaded_path_mm, mesh, flank.
 
@@ -287,7 +316,8 @@ class OperatingPoseResult(Result):
         return self.content["loads"].copy()
 
     def leaving(self) -> pd.DataFrame:
-        """One row a contact that leaves the face: mesh, fraction of the torques, end of the face, mm.
+        """One row a contact that leaves the face: mesh, fraction of the mean torques at which it does,
+        and the end of the face.
 
         Columns, among others: load_fraction, mesh, end.
 
@@ -299,7 +329,8 @@ class OperatingPoseResult(Result):
         return self.content["leaving"].copy()
 
     def check(self) -> pd.DataFrame:
-        """The surface beside the contact solved directly, for the mesh that its pose changes most.
+        """The interpolated surface beside the contact solved directly, a row a quantity, for the mesh
+        that its pose changes most.
 
         Columns, among others: surface, direct, quantity.
 

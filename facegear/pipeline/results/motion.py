@@ -24,7 +24,10 @@ class ResponseResult(Result):
     STAGE: ClassVar = "dynamics_response"
 
     def table(self) -> pd.DataFrame:
-        """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class.
+        """Numbers of the steady state, one row a quantity (unit at its end) and body or mesh, as a
+        sweep keeps them.
+
+        `class` is the class of motion; symmetry_broken tells whether it has mirror images.
 
         Columns: speed_rpm, quantity, body_or_mesh, value, class, periodic, symmetry_broken.
 
@@ -36,7 +39,10 @@ class ResponseResult(Result):
         return self.content["summary"].copy()
 
     def history(self) -> pd.DataFrame:
-        """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods.
+        """Deflection (um) and elastic force (N) of every mesh along the line of action, over at most 32
+        mesh periods.
+
+        Forces are negative on the back flank; mesh_cycle counts mesh periods.
 
         Columns: mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
 
@@ -79,19 +85,22 @@ NO_ITEM = "machine"
 
 
 def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
-    """Return quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
+    """Arrange the long table of a sweep as arrays over direction, speed_rpm and, by quantity, mesh or
+    body or neither.
 
-    The names of meshes hold a stroke, `pinion/side`, those of bodies do not.
+    The names of meshes hold a stroke, `pinion/side`, those of bodies do not. They keep the order of the
+    table.
 
     Parameters
     ----------
     table : pd.DataFrame
-        Table of a sweep.
+        Table `sweep` of stage dynamics_sweep.
 
     Returns
     -------
     xr.Dataset
-        The quantities with their coordinates.
+        Quantities by name, nan where the table has no row; `class`, `periodic`, `after_irregular` and
+        `symmetry_broken` by direction and speed.
     """
     import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
@@ -121,12 +130,14 @@ def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
 
 
 def _kind(name: str) -> str:
-    """Whether a name is that of a mesh, of a body, or of the machine (no text)."""
+    """Return `mesh` for a name with a stroke, `body` for one without, empty text for the whole machine."""
     return "" if name == NO_ITEM else "mesh" if "/" in name else "body"
 
 
 def _fill_array(rows: pd.DataFrame, column: str, axes: dict[str, list], empty: object) -> "xr.DataArray":
-    """One column over its axes; `empty` where the table has no row."""
+    """Put one column of rows into an array over `axes`, whose values select the place; `empty` where
+    there is no row.
+    """
     import xarray as xr  # as above
 
     values = np.full([len(axis) for axis in axes.values()], empty, dtype=object if empty == "" else float)
@@ -187,7 +198,8 @@ class SweepResult(Result):
         return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
 
     def irregular_ends(self) -> pd.DataFrame:
-        """One row for each abrupt change at which irregular motion begins or ends; columns as of `jumps`.
+        """One row for each abrupt change at which irregular (not periodic) motion begins or ends;
+        columns as of `jumps`.
 
         Where irregular motion ends is a matter of chance: there `error_rpm` is the step of the sweep.
 
@@ -200,7 +212,11 @@ class SweepResult(Result):
         return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
 
     def resonances(self) -> pd.DataFrame:
-        """One row a peak of the RMS without mean, with the mode it belongs to.
+        """One row a peak over speed of the AC RMS (RMS without mean) of a deflection or displacement,
+        with its natural mode.
+
+        resonance_rpm is where `order` times the mesh frequency meets the mode, which has
+        `energy_fraction` of the energy.
 
         Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, resonance, resonance_rpm,
         energy_fraction, mode, order, periodic, after_irregular, symmetry_broken.
@@ -281,9 +297,11 @@ class BranchesResult(Result):
         return self.content["branches"].copy()
 
     def images(self) -> pd.DataFrame:
-        """Return branch and image_of: the branches that are mirror images, and the followed ones they map.
+        """Return which branches are mirror images, under a symmetry of the machine, and of which
+        followed branch.
 
-        Columns, among others: branch, period, points, image_of, tried.
+        Columns: branch, image_of; both are numbers of branches. They come from the table of ends, whose
+        columns are, among others: branch, period, points, image_of, tried.
 
         Returns
         -------
@@ -307,7 +325,8 @@ class BranchesResult(Result):
         return self.content["special"].copy()
 
     def margins(self) -> pd.DataFrame:
-        """Margin of each stable motion at the nominal speed to its end, in speed and in torque.
+        """Margin of each stable motion at the nominal speed until it ends or loses stability, in speed
+        and in torque.
 
         Columns, among others: branch, parameter, margin.
 
@@ -319,7 +338,8 @@ class BranchesResult(Result):
         return self.content["margins"].copy()
 
     def ranges(self) -> pd.DataFrame:
-        """Speeds between which several stable motions exist.
+        """Ranges of speed (rpm) in which several stable motions exist, with the numbers of their
+        branches.
 
         Columns, among others: from_rpm, to_rpm, branches.
 
@@ -331,7 +351,8 @@ class BranchesResult(Result):
         return self.content["ranges"].copy()
 
     def coexistence(self) -> pd.DataFrame:
-        """Fraction of random starts that ends on each motion, with its standard error.
+        """Fraction of random starts at a speed that ends on each motion, with its standard error, and
+        the branch of the motion.
 
         Columns, among others: speed_rpm, fraction, error, branch, motion.
 
@@ -400,7 +421,10 @@ class BranchLociResult(Result):
     STAGE: ClassVar = "branches_loci"
 
     def table(self) -> pd.DataFrame:
-        """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp.
+        """One row a point of a curve: locus, kind of point, second parameter, factor on that
+        parameter's value in the config, speed.
+
+        `corner` marks a cusp.
 
         Columns, among others: locus, kind, factor, speed_rpm, corner.
 

@@ -19,12 +19,18 @@ STUDY = "compared"
 
 
 class LoadSharingResult(Result):
-    """Load-sharing coefficients of every group of meshes that share a load."""
+    """Load-sharing coefficients of every group of meshes that share a load: largest mesh force over the
+    mean of the group.
+    """
 
     STAGE: ClassVar = "load_sharing"
 
     def table(self) -> pd.DataFrame:
-        """One row a group: mean and its half_width, extremes, lost contact, class of motion.
+        """One row a group: mean coefficient with the half_width of its 95 % interval, and what it was
+        averaged over.
+
+        `lost_fraction` is the time in which a path is out of contact, `undefined_fraction` that in
+        which all are; `starts_low` and `starts_high` are the range of means from other starts.
 
         Columns: group, kind, mean, half_width, minimum, maximum, cycle_minimum, cycle_low, cycle_high,
         lost_fraction, undefined_fraction, motion, cycles, starts_low, starts_high, motions_from_starts,
@@ -38,9 +44,13 @@ class LoadSharingResult(Result):
         return self.content["summary"].copy()
 
     def curve(self) -> pd.DataFrame:
-        """Coefficient of every group over one mesh cycle, with the envelope over all cycles.
+        """Coefficient of every group over one mesh cycle (cycle_fraction 0 to 1), with the envelope
+        over all cycles.
 
-        Columns: group, kind, cycle_fraction, time_s, coefficient, envelope_low, envelope_high, lost_fraction.
+        `lost_fraction` is the fraction of cycles in which a path is out of contact at that instant.
+
+        Columns: group, kind, cycle_fraction, time_s, coefficient, envelope_low, envelope_high,
+        lost_fraction.
 
         Returns
         -------
@@ -89,15 +99,21 @@ class LoadSharingResult(Result):
 
 
 class HuntingResult(Result):
-    """Load sharing of the machine at rest, tooth by tooth, until every pair of teeth has met."""
+    """Load sharing of the machine at rest, tooth by tooth, until every pair of teeth has met; statics
+    alone.
+    """
 
     STAGE: ClassVar = "hunting"
 
     def table(self) -> pd.DataFrame:
-        """One row a group: loads of its meshes and K_gamma, the largest over the nominal even share.
+        """One row a group: least, mean and largest coefficient, and K_gamma.
 
-        Columns: group, kind, mean, least, largest, k_gamma, group_ratio, undefined_fraction, torque_n_m,
-        mesh_cycles, kkt_residual.
+        K_gamma is the largest mean load of a mesh cycle over the nominal even share; `group_ratio` the
+        largest load over the mean of the group's own loads. torque_n_m is the largest torque on a
+        pinion, to which all values belong.
+
+        Columns: group, kind, mean, least, largest, k_gamma, group_ratio, undefined_fraction,
+        torque_n_m, mesh_cycles, kkt_residual.
 
         Returns
         -------
@@ -107,10 +123,14 @@ class HuntingResult(Result):
         return self.content["groups"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """One row a mesh: loads (N), K_gamma, fractions of the cycle on each flank, open and wedged.
+        """One row a mesh: loads (N), K_gamma, fractions of the time on each flank, open and wedged
+        (both flanks).
 
-        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, group_ratio,
-        drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+        even_share_n, torque_n_m: nominal even share. first_open_cycle: first mesh cycle with an open
+        mesh, empty without.
+
+        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma,
+        group_ratio, drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
 
         Returns
         -------
@@ -120,7 +140,11 @@ class HuntingResult(Result):
         return self.content["meshes"].copy()
 
     def bearings(self) -> pd.DataFrame:
-        """One row a body: force on its bearing (N).
+        """One row a body, and one a bearing of each shaft: force on the bearing (N) over the hunting
+        cycle.
+
+        A pinion's x is tangential and y along the gears' axis, both radial for its bearing; a face
+        gear's axis is z.
 
         Columns: body, mean_x_n, mean_y_n, mean_z_n, mean_radial_n, largest_radial_n, largest_axial_n.
 
@@ -132,7 +156,7 @@ class HuntingResult(Result):
         return self.content["bearings"].copy()
 
     def cycles(self) -> pd.DataFrame:
-        """One row a mesh cycle: share of each mesh in its group's load.
+        """One row a mesh cycle: mean load of each mesh in it, N.
 
         Columns: cycle, and one of each mesh, such as `input 1/upper`, N.
 
@@ -157,12 +181,15 @@ class HuntingResult(Result):
 
 
 class SensitivityResult(Result):
-    """By how much each error, one at a time, changes the load sharing at rest."""
+    """Change of the load sharing at rest by each error of the machine, one at a time, and by bearing
+    stiffness.
+    """
 
     STAGE: ClassVar = "hunting"
 
     def table(self) -> pd.DataFrame:
-        """One row an error and group, largest first: change of K_gamma per um.
+        """One row an error and group, largest first: change of K_gamma per um of the error alone, by
+        central differences.
 
         Columns: error, group, per_um.
 
@@ -174,7 +201,8 @@ class SensitivityResult(Result):
         return self.content["sensitivity"].copy()
 
     def bearing_stiffness(self) -> pd.DataFrame:
-        """K_gamma against the bearing stiffness of the pinions of each role.
+        """K_gamma of each kind of group against the bearing stiffness of the pinions of one role
+        (`varied`), both kinematics.
 
         Columns: kinematics, varied, stiffness_n_per_m, kind, k_gamma.
 
@@ -187,7 +215,7 @@ class SensitivityResult(Result):
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """The errors that matter most.
+        """The errors with the largest change of K_gamma per um.
 
         Returns
         -------
@@ -206,6 +234,11 @@ class FollowingResult(Result):
     def table(self) -> pd.DataFrame:
         """One row a group: K_gamma and K_v of the running machine beside K_gamma at rest.
 
+        k_gamma_static takes the same mesh cycles, k_gamma_static_whole all. `cut`: relative error of
+        the former by following a part of the hunting cycle; `sampling`: relative change of K_gamma K_v
+        with every second sample alone; lead_cycles: mesh cycles run before; `memory`: difference of
+        forces between two starts, over the largest force.
+
         Columns: group, kind, speed_rpm, mesh_cycles, mean, torque_n_m, k_gamma, k_v, k_gamma_static,
         k_gamma_static_whole, cut, sampling, lead_cycles, memory.
 
@@ -217,10 +250,11 @@ class FollowingResult(Result):
         return self.content["groups"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """One row a mesh: loads (N), K_gamma and K_v.
+        """One row a mesh: loads (N), K_gamma, K_v (largest load over largest mean of a mesh cycle), and
+        time on each flank.
 
-        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, k_v, group_ratio,
-        drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, k_v,
+        group_ratio, drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
 
         Returns
         -------
@@ -231,7 +265,7 @@ class FollowingResult(Result):
 
 
 def _require_groups(result: Result) -> None:
-    """Refuse to draw where no meshes share a load. Raises FacegearError."""
+    """Raise FacegearError where no meshes of the machine share a load, as there is nothing to draw."""
     if result.content["groups"].empty:
         raise FacegearError(f"{result.values['case']}: no meshes share a load, there is nothing to draw")
 
@@ -253,7 +287,10 @@ class SharingMapResult(Result):
         return self.content["advice"].copy()
 
     def points(self) -> pd.DataFrame:
-        """Return the machine's place on the map at each of its torques.
+        """Return the machine's place on the map at each of its torques, with percentiles of K_gamma
+        over random deviations.
+
+        `number` is k_e sigma / W for idlers and 2 b k / W for inputs, W being load_n.
 
         Returns
         -------
@@ -263,18 +300,25 @@ class SharingMapResult(Result):
         return self.content["points"].copy()
 
     def curves(self) -> pd.DataFrame:
-        """Return K_gamma of idlers over k_e sigma / W, beside the closed form.
+        """Return K_gamma of idlers over `number` = k_e sigma / W: path stiffness, standard deviation,
+        load of the group.
+
+        One curve for each way of `floating` face gears; all_carry is the fraction of samples in which
+        every path carries, closed_* the closed form.
 
         Returns
         -------
         pd.DataFrame
-            Columns group, floating, number, all_carry, k_gamma_p50, k_gamma_p95, k_gamma_p99, closed_p50,
-            closed_p95, closed_p99.
+            Columns group, floating, number, all_carry, k_gamma_p50, k_gamma_p95, k_gamma_p99,
+            closed_p50, closed_p95, closed_p99.
         """
         return self.content["curves"].copy()
 
     def inputs(self) -> pd.DataFrame:
-        """Return K_gamma of inputs over 2 b k / W, beside the loop formula.
+        """Return K_gamma of inputs over `number` = 2 b k / W: backlash, mesh stiffness, load of the
+        input.
+
+        One curve for each factor on the stiffness of their bearings; `closed` is the loop formula.
 
         Returns
         -------

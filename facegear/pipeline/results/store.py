@@ -34,7 +34,11 @@ COMMAND = "facegear report"
 
 @dataclass(frozen=True)
 class PartialResults:
-    """A folder of stages' files, each below a name made of all that decides them: config and code.
+    """Results of stages that are kept in a folder until a report is complete, so that a stopped report
+    goes on from there.
+
+    Each stage has a subfolder whose name is a hash of all that decides its results: config values and
+    code.
 
     Attributes
     ----------
@@ -45,7 +49,7 @@ class PartialResults:
     folder: Path
 
     def require_usable(self) -> None:
-        """Check before work is done that stages can be kept.
+        """Check, before work is done, that files can be written to the folder where it exists.
 
         Raises
         ------
@@ -58,16 +62,17 @@ class PartialResults:
     def output(
         self, stages: list[str], key: str, compute: Callable[[], "Outcome"]
     ) -> tuple[Mapping[str, Any], str, bool]:
-        """Find what a stage gave, or compute and keep it.
+        """Return a stage's output from its subfolder, or compute it and write it there.
 
         Parameters
         ----------
         stages : list of str
-            The stage and all before it.
+            Name of the stage first, then of all stages before it; their code is part of the subfolder's
+            name.
         key : str
-            The part of the config that they depend on, as text.
+            Config values on which they depend, as text (`Store._key`).
         compute : callable
-            Computes the stage.
+            Function without arguments that computes the stage.
 
         Returns
         -------
@@ -92,18 +97,19 @@ class PartialResults:
         return outcome.content, outcome.summary, False
 
     def part(self, stages: list[str], key: str, file: File, compute: Callable[[], Any]) -> Any:
-        """Find the content of one file of a stage with wildcards, or compute and keep it.
+        """Return the content of one file of a stage with wildcards from its subfolder, or compute it
+        and write it there.
 
         Parameters
         ----------
         stages : list of str
-            The stage and all before it.
+            Name of the stage first, then of all stages before it.
         key : str
             The part of the config that they depend on, and the wildcards, as text.
         file : File
             The file.
         compute : callable
-            Computes its content.
+            Function without arguments that computes the file's content.
 
         Returns
         -------
@@ -121,17 +127,23 @@ class PartialResults:
         return content
 
     def remove(self) -> None:
-        """Remove what was kept."""
+        """Remove the folder with all that was kept."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _subfolder(self, stages: list[str], key: str) -> Path:
-        """Return the folder of a stage's results, named by its needs and the code of all stages."""
+        """Return the subfolder of a stage: its name and a hash of `key` and of the code of all
+        `stages`.
+        """
         codes = [stage_fingerprint(STAGES[stage].functions, ROOT) for stage in stages]
         digest = hashlib.sha256("\n".join([key, *codes]).encode()).hexdigest()
         return self.folder / f"{stages[0]}_{digest[:16]}"
 
     def _keep(self, subfolder: Path, name: str, parts: Mapping[str, Any], summary: str, start: float) -> None:
-        """Write the parts of a stage with their manifest."""
+        """Write the parts of a stage (content by file name), and last their manifest, which shows that
+        they are complete.
+
+        `start` is the value of `time.perf_counter` (s) at which the computation began.
+        """
         for file, content in parts.items():
             write_part(str(subfolder / file), content)
         seconds = time.perf_counter() - start
@@ -140,7 +152,7 @@ class PartialResults:
 
 
 def _name(part: str, file: File) -> str:
-    """Return the file name of a part."""
+    """Return the file name of a part: its name with the ending of the stage's file."""
     return part + Path(file.path).suffix
 
 
@@ -150,12 +162,16 @@ Values = Mapping[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Store:
-    """Results by the part of the config that they depend on; `values` are those of a whole config.
+    """Memory of results by the part of the config that they depend on, in front of files and of
+    computation.
 
-    `folder` is that of the case in the workflow's results, None to read nothing; `other_cases` are folders of
-    cases of the same config, with which this case may share files. `partial` keeps what is computed for a
-    report, None to keep nothing; `failures` keeps errors, so that no stage fails twice. Changed copies of a
-    machine share a store: what a change does not touch is found again.
+    - folder: the case's folder in the workflow's results, None to read nothing
+    - outputs: results of this session, by `_key`
+    - other_cases: folders of cases of the same config, with which this case may share files
+    - partial: folder that keeps what is computed for a report, None to keep nothing
+    - failures: errors by `_key`, so that no stage fails twice; None to keep none
+
+    Changed copies of a machine share a store: what a change does not touch is found again.
     """
 
     folder: Path | None = None
@@ -166,11 +182,12 @@ class Store:
 
     @property
     def folders(self) -> tuple[Path, ...]:
-        """All folders in which a file may lie."""
+        """All folders in which a stored file may lie, the case's own first; none if nothing is read."""
         return () if self.folder is None else (self.folder, *self.other_cases)
 
     def output(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> StageOutput:
-        """Return all that a stage gives: known already, else stored and current, else computed.
+        """Return all files of a stage: those of this session, else stored and up to date, else
+        computed.
 
         Parameters
         ----------
@@ -179,15 +196,19 @@ class Store:
         values : Values
             Plain values of a whole config.
         compute : Callable[[], 'Outcome']
-            Function that computes the stage.
+            Function without arguments that computes the stage; it is not called where results are
+            found.
 
         Returns
         -------
         StageOutput
-            Output of the stage.
+            Content by file name, summary, and whether it was computed or stored.
         """
 
         def find() -> StageOutput:
+            """Return the output from a folder of the workflow, from the partial results, or by
+            computing it.
+            """
             for folder in self.folders:
                 stored_output = self._read_stored(name, values, folder)
                 if stored_output is not None:
@@ -204,8 +225,8 @@ class Store:
     def part(
         self, name: str, file: str, wildcards: Wildcards, values: Values, compute: Callable[[], Any]
     ) -> Any:
-        """Return one file of a stage that has wildcards: known already, else stored and current, else
-        computed.
+        """Return one file of a stage that has wildcards: that of this session, else stored and up to
+        date, else computed.
 
         Parameters
         ----------
@@ -218,7 +239,7 @@ class Store:
         values : Values
             Plain values of a whole config.
         compute : Callable[[], Any]
-            Function that computes the file's content.
+            Function without arguments that computes the file's content.
 
         Returns
         -------
@@ -227,6 +248,9 @@ class Store:
         """
 
         def find() -> Any:
+            """Return the content from a folder of the workflow, from the partial results, or by
+            computing it.
+            """
             kept_content = STAGES[name].files[file]
             for path in (folder / kept_content.at(wildcards) for folder in self.folders):
                 if self._current_manifest(path, values):
@@ -241,7 +265,11 @@ class Store:
         return self._once(name, (file, *wildcards.values()), values, find)
 
     def _once(self, name: str, part: tuple[str, ...], values: Values, find: Callable[[], Value]) -> Value:
-        """Return what `find` gives; it is kept under the part of the config that it depends on."""
+        """Return what `find` gives, called once for each part of the config on which it depends.
+
+        `part` is empty for all of a stage, else name of the file and wildcards. An error is raised
+        again where `failures` keeps it.
+        """
         key = self._key(name, part, values)
         if self.failures is not None and key in self.failures:
             raise self.failures[key]
@@ -256,12 +284,16 @@ class Store:
         return self.outputs[key]
 
     def _key(self, name: str, part: tuple[str, ...], values: Values) -> str:
-        """Return all values of the config on which a part of a stage depends, as text."""
+        """Return, as JSON text, stage, part, and all config values on which these depend: its own needs
+        and those before it.
+        """
         needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
         return json.dumps([name, part, needs])
 
     def _read_stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
-        """Return the stored output of a stage if it is complete and up to date, else None."""
+        """Return the output of a stage from files below a case's folder; None unless all are there,
+        undamaged and up to date.
+        """
         summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
@@ -272,7 +304,9 @@ class Store:
         return None if content is None else StageOutput(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
-        """Return the manifest of a file if it is up to date, else None."""
+        """Return the manifest of a stored file if its config values, code and inputs are those of now,
+        else None.
+        """
         return current_manifest(
             path,
             lambda rule: stage_needs(rule, values) if rule in STAGES else None,
@@ -281,16 +315,16 @@ class Store:
 
 
 def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path | None:
-    """Return the folder of a case below the results.
+    """Return the first folder `<folder>/<results>/<case>` that exists and may be entered.
 
     Parameters
     ----------
     folders : Iterable[Path]
         Folders in which relative results are looked for.
     results : str or Path
-        Folder of the results.
+        Folder of the results, relative to each of `folders` or absolute.
     case : str
-        Name of the case.
+        Id of the case.
 
     Returns
     -------
@@ -302,7 +336,7 @@ def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path
 
 
 def _unless_corrupt(read: Callable[[], Value]) -> Value | None:
-    """Return the stored content; None, with a warning, if it is damaged."""
+    """Return what `read` gives; None, with a warning, if the stored file is damaged."""
     try:
         return read()
     except CorruptFile as error:

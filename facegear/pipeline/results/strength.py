@@ -26,10 +26,15 @@ class RootStressResult(Result):
     STAGE: ClassVar = "root_stress"
 
     def table(self) -> pd.DataFrame:
-        """Peak of each fillet with its place, a row a torque, body and fillet (docs/explanation/strength.md).
+        """Peak tension of each fillet with its place, a row a torque, body and fillet
+        (docs/explanation/strength.md).
 
-        Columns: torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm, tangent_deg,
-        at_30_deg_mpa, smallest_mpa.
+        `fillet` is `loaded` or `other`, below the loaded or the other flank. `passage` is the position
+        of the tooth in pitches, radius_mm and tangent_deg the place of the peak along the face and down
+        the fillet.
+
+        Columns: torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm,
+        tangent_deg, at_30_deg_mpa, smallest_mpa.
 
         Returns
         -------
@@ -54,7 +59,8 @@ class RootStressResult(Result):
         return self.content["by_flank"].copy()
 
     def stress(self, body: str = "face_gear") -> "xr.DataArray":
-        """Return the stress over torque, passage, fillet and the fillet's gauges.
+        """Return the stress while a tooth passes through the mesh, over torque, passage, fillet and the
+        fillet's gauges.
 
         Parameters
         ----------
@@ -64,7 +70,8 @@ class RootStressResult(Result):
         Returns
         -------
         xr.DataArray
-            Stress, MPa, with its coordinates.
+            Stress, MPa, tension positive, over torque_n_m, passage (pitches), fillet (`loaded`,
+            `other`), `down` the fillet and `along` the face.
         """
         import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
@@ -106,11 +113,16 @@ class DynamicStressResult(Result):
     STAGE: ClassVar = "dynamic_root_stress"
 
     def table(self) -> pd.DataFrame:
-        """A row a mesh: forces, dynamic factor, root stress of both bodies (docs/explanation/strength.md).
+        """A row a mesh: forces, dynamic factor, root stress of both bodies
+        (docs/explanation/strength.md).
 
-        Columns: mesh, mean_force_n, largest_force_n, dynamic_factor, pinion_mean_mpa, pinion_running_mpa,
-        pinion_bound_mpa, face_gear_mean_mpa, face_gear_running_mpa, face_gear_bound_mpa, pressure_mean_mpa,
-        pressure_bound_mpa, within_torques_solved.
+        `mean` is the largest stress over a passage with the mean force, `running` the largest of the
+        history, `bound` that with the largest force all through the passage. dynamic_factor is largest
+        over mean force.
+
+        Columns: mesh, mean_force_n, largest_force_n, dynamic_factor, pinion_mean_mpa,
+        pinion_running_mpa, pinion_bound_mpa, face_gear_mean_mpa, face_gear_running_mpa,
+        face_gear_bound_mpa, pressure_mean_mpa, pressure_bound_mpa, within_torques_solved.
 
         Returns
         -------
@@ -126,12 +138,14 @@ class StressOverSpeedResult(Result):
     STAGE: ClassVar = "stress_over_speed"
 
     def table(self) -> pd.DataFrame:
-        """A row a motion and speed; `worst` marks the hardest of all known at it.
+        """A row a speed and motion (direction of the sweep or branch): stress under the largest mesh
+        force, an upper bound.
 
-        docs/explanation/strength.md says how.
+        dynamic_factor is that force over the largest mesh force at standstill; `worst` marks the
+        hardest motion at a speed. docs/explanation/strength.md says how.
 
-        Columns: motion, class, speed_rpm, mesh, largest_force_n, dynamic_factor, pinion_mpa, face_gear_mpa,
-        pressure_mpa, within_torques_solved, worst.
+        Columns: motion, class, speed_rpm, mesh, largest_force_n, dynamic_factor, pinion_mpa,
+        face_gear_mpa, pressure_mpa, within_torques_solved, worst.
 
         Returns
         -------
@@ -171,11 +185,15 @@ class RatingResult(Result):
         return self.content["rating"].copy()
 
     def safety(self) -> pd.DataFrame:
-        """A row a flank: safety against each failure, life, reliability, verdict.
+        """A row a flank: safety against each failure, life, reliability where a card has it, verdict.
+
+        `standard_*` are by the method of the standard; edge_* are line load and length of contact on
+        tip edges under the largest torque. Scuffing and micropitting stand where flanks are lubricated
+        and loads are the machine's.
 
         Columns: body, flank, verdict, bending_safety, standard_bending_safety, pitting_safety,
-        standard_pitting_safety, edge_line_load_n_per_mm, edge_length_mm, life_hours, nearest_limit, reason,
-        caveat, within_torques_solved, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
+        standard_pitting_safety, edge_line_load_n_per_mm, edge_length_mm, life_hours, nearest_limit,
+        reason, caveat, within_torques_solved, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
         micropitting_safety.
 
         Returns
@@ -186,10 +204,11 @@ class RatingResult(Result):
         return self.content["safety"].copy()
 
     def damage(self) -> pd.DataFrame:
-        """Stress, cycles and damage of each bin of the duty cycle.
+        """A row a flank, failure, method and bin of the duty cycle: largest torque and stress, sums of
+        cycles and damage.
 
-        Columns: body, gear, flank, failure, method, bin, torque_n_m, speed_rpm, hours, stress_mpa, cycles,
-        damage, within_torques_solved.
+        Columns: body, gear, flank, failure, method, bin, torque_n_m, speed_rpm, hours, stress_mpa,
+        cycles, damage, within_torques_solved.
 
         Returns
         -------
@@ -227,15 +246,17 @@ class FrictionResult(Result):
     BESIDE: ClassVar = {"pressure": ("contact", "pressure")}
 
     def table(self) -> pd.DataFrame:
-        """A row a torque at the nominal speed: loss factor, efficiency, temperatures, film, safeties.
+        """A row a torque (N m on the pinion) at the nominal speed: loss factor, efficiency,
+        temperatures, film, safeties.
 
         Columns: torque_n_m, speed_rpm, friction_model, loss_factor, loss_factor_min, loss_factor_max,
-        mean_friction, loss_w, efficiency, pinion_heat_w, face_gear_heat_w, pinion_bulk_c, face_gear_bulk_c,
-        largest_sliding_m_per_s, largest_flash_k, flash_position, flash_pair, flash_axial_mm,
-        contact_temperature_c, allowed_contact_temperature_c, allowed_contact_temperature_source,
-        scuffing_safety, scuffing_margin_k, mean_flash_k, integral_temperature_c,
-        allowed_integral_temperature_c, integral_safety, smallest_film_um, smallest_short_film_um,
-        smallest_film_ratio, smallest_micropitting_film_ratio, micropitting_safety.
+        mean_friction, loss_w, efficiency, pinion_heat_w, face_gear_heat_w, pinion_bulk_c,
+        face_gear_bulk_c, largest_sliding_m_per_s, largest_flash_k, flash_position, flash_pair,
+        flash_axial_mm, contact_temperature_c, allowed_contact_temperature_c,
+        allowed_contact_temperature_source, scuffing_safety, scuffing_margin_k, mean_flash_k,
+        integral_temperature_c, allowed_integral_temperature_c, integral_safety, smallest_film_um,
+        smallest_short_film_um, smallest_film_ratio, smallest_micropitting_film_ratio,
+        micropitting_safety.
 
         Returns
         -------
@@ -245,7 +266,7 @@ class FrictionResult(Result):
         return self.content["by_torque"].copy()
 
     def positions(self) -> pd.DataFrame:
-        """A row a torque and position: loss, largest flash, thinnest film.
+        """A row a torque and position in a pitch: loss, largest flash temperature rise, thinnest film.
 
         Columns: torque_n_m, position, loss_factor, loss_w, largest_flash_k, smallest_film_um,
         smallest_film_ratio.
@@ -258,7 +279,8 @@ class FrictionResult(Result):
         return self.content["positions"].copy()
 
     def limits(self) -> pd.DataFrame:
-        """Percentage of the loss that lies outside each limit of the friction model.
+        """Percentage of the loss that lies outside each limit of validity of the friction model, by
+        torque.
 
         Columns: friction_model, limit, limit_source, torque_n_m, loss_outside_percent.
 
@@ -323,12 +345,16 @@ class MachineLossResult(Result):
         return self.content["machine"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """A row a bin and loaded flank: power, loss, temperatures, safety, film.
+        """A row a bin and loaded flank: power, loss, temperatures, safety, film; bins as in `table`.
+
+        Torques on the pinion: mean, and largest of the bin. loss_in_motion_w is the mean loss in the
+        running machine, bin 0 alone.
 
         Columns: bin, speed_rpm, mesh, flank, pinion_torque_n_m, largest_torque_n_m, power_w, loss_w,
-        loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c, face_gear_bulk_c,
-        largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
-        smallest_micropitting_film_ratio, micropitting_safety, within_torques_solved.
+        loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c,
+        face_gear_bulk_c, largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k,
+        smallest_film_ratio, smallest_micropitting_film_ratio, micropitting_safety,
+        within_torques_solved.
 
         Returns
         -------
@@ -338,7 +364,8 @@ class MachineLossResult(Result):
         return self.content["meshes"].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """A row a bin and body: heat and bulk temperature.
+        """A row a bin and body: heat that friction brings to it, and its bulk temperature; bins as in
+        `table`.
 
         Columns: bin, speed_rpm, body, heat_w, bulk_c.
 

@@ -31,11 +31,15 @@ Changes = Mapping[str, Mapping[str, Any]]
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Machines by label, and what was changed in each.
+    """Changed copies of a machine by label, and what was changed in each.
+
+    `machines` are gearboxes; `changes` hold the changed config keys with their values, by the same
+    labels.
 
     >>> import facegear
     >>> study = facegear.example().study({"mesh_stiffness.mean_n_per_m": [4e8, 5e8]})
-    >>> study.table("modes").groupby("mesh_stiffness.mean_n_per_m")["frequency_hz"].max().round(1).to_list()
+    >>>
+    study.table("modes").groupby("mesh_stiffness.mean_n_per_m")["frequency_hz"].max().round(1).to_list()
     [6228.0, 6559.7]
     """
 
@@ -43,12 +47,12 @@ class Study:
     changes: Changes
 
     def results(self, answer: str, **arguments: Any) -> dict[str, Result]:
-        """Compute what each machine answers.
+        """Compute one answer, such as `modes` or `sweep`, for each machine.
 
         Parameters
         ----------
         answer : str
-            Name of a method of a gearbox.
+            Name of a method of a gearbox that returns a Result.
         **arguments : Any
             Arguments of the method.
 
@@ -69,7 +73,8 @@ class Study:
         return results
 
     def table(self, answer: str, **arguments: Any) -> pd.DataFrame:
-        """Join the tables of an answer, with the changed keys as columns in front.
+        """Join the tables (`table()`) of an answer of all machines, with the changed keys as columns in
+        front.
 
         Parameters
         ----------
@@ -81,7 +86,7 @@ class Study:
         Returns
         -------
         pd.DataFrame
-            The table.
+            The rows of all machines, in their order.
         """
         parts = []
         for label, result in self.results(answer, **arguments).items():
@@ -146,7 +151,9 @@ class Study:
         return describe(first, label=self._words(label), beside=results_by_words, **(plot or {}))
 
     def _words(self, label: str) -> str:
-        """Return the changes of a machine in words where its label holds their keys."""
+        """Return the changes of a machine in words with units; its label itself where a user has chosen
+        it.
+        """
         changes = self.changes[label]
         if label != combined_label(changes):
             return label
@@ -164,13 +171,15 @@ def combined_label(changes: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        Keys and values.
+        `key = value` for each, joined by commas.
     """
     return ", ".join(f"{key} = {value}" for key, value in changes.items())
 
 
 def _answer(method: Any, answer: str, arguments: Mapping[str, Any]) -> Any:
-    """Call a method of a gearbox. Raises FacegearError for arguments that it does not have."""
+    """Call a method of a gearbox, and raise FacegearError in place of TypeError for arguments that it
+    does not take.
+    """
     try:
         signature(method).bind(**arguments)
     except TypeError as error:
@@ -179,18 +188,18 @@ def _answer(method: Any, answer: str, arguments: Mapping[str, Any]) -> Any:
 
 
 def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any]]:
-    """Return keys and values in every combination, by label.
+    """Return keys and values in every combination (Cartesian product), by label.
 
     Parameters
     ----------
     values : Mapping[str, Iterable[Any]]
-        Values of each dotted config key.
+        Values of each dotted config key; not empty, and no key may hold another.
 
     Returns
     -------
     dict[str, dict[str, Any]]
-        Keys and values by label. Raises FacegearError for a key without values, and for a key that holds
-        another.
+        Keys and values by label. Raises FacegearError for a key without values, and for a key that
+        holds another.
     """
     if not isinstance(values, Mapping) or not values:
         raise FacegearError(f"study = {values!r}: must be a mapping of config keys to lists of values")
@@ -218,7 +227,10 @@ class LoadMapResult(Result):
     STAGE: ClassVar = "tolerances_map"
 
     def table(self) -> pd.DataFrame:
-        """One row a torque, speed, quantity and percentile: value, and the interval that holds it.
+        """One row a torque, speed, quantity and percentile: value, and the confidence interval from
+        `low` to `high`.
+
+        torque_factor multiplies the torques of the config.
 
         Columns: torque_factor, speed_rpm, quantity, percentile, value, low, high, samples, failed.
 
@@ -230,7 +242,8 @@ class LoadMapResult(Result):
         return self.content["load_map"].copy()
 
     def fractions(self) -> pd.DataFrame:
-        """One row a torque, speed and mishap: fraction of the machines that it meets, with its interval.
+        """One row a torque, speed and event (`what`): fraction of the machines that it meets, with its
+        confidence interval.
 
         Columns: torque_factor, speed_rpm, what, fraction, low, high, samples.
 
@@ -271,7 +284,8 @@ class TolerancesResult(Result):
         return self.content["percentiles"].copy()
 
     def samples(self) -> pd.DataFrame:
-        """One row a sample: its causes, what was found, and the error where it failed.
+        """One row a random sample: drawn values of its causes, computed quantities, and the error text
+        where it failed.
 
         Returns
         -------
@@ -326,7 +340,8 @@ class SearchResult(Result):
     STAGE: ClassVar = "search"
 
     def table(self) -> pd.DataFrame:
-        """One row a design of the front: variables and goals.
+        """One row a design of the Pareto front: values of the variables, objectives and limited
+        quantities.
 
         Returns
         -------
@@ -336,7 +351,8 @@ class SearchResult(Result):
         return self.content["front"].copy()
 
     def winners(self) -> pd.DataFrame:
-        """The nominal design and the winners at full accuracy, beside what the search found of them.
+        """The nominal design and the winners of the front at full accuracy; `<goal>_searched` is what
+        the search had found.
 
         Returns
         -------
@@ -356,9 +372,10 @@ class SearchResult(Result):
         return self.content["designs"].copy()
 
     def hypervolume(self) -> pd.DataFrame:
-        """Share of the box of all fronts that each seed has covered, by generation.
+        """Share of the box around all fronts that the designs of each seed dominate, up to each
+        generation.
 
-        Columns, among others: hypervolume.
+        Columns: seed, generation, hypervolume.
 
         Returns
         -------

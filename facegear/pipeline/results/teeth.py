@@ -22,7 +22,10 @@ class GeometryResult(Result):
     STAGE: ClassVar = "geometry"
 
     def table(self) -> pd.DataFrame:
-        """Columns quantity and value; the unit stands at the end of a quantity's name.
+        """All numbers and texts of the geometry's record: columns quantity and value; the unit ends a
+        quantity's name.
+
+        A quantity inside a section of the record is `section.name`.
 
         Returns
         -------
@@ -62,7 +65,7 @@ class GeometryResult(Result):
 
 
 def _sections(record: dict) -> list[tuple[str, dict]]:
-    """Return a record and each mapping inside it, with their names."""
+    """Return a record under the empty name, and each mapping inside it under its own name."""
     inner = [(name, value) for name, value in record.items() if isinstance(value, dict)]
     return [("", record), *inner]
 
@@ -104,12 +107,15 @@ class TopographyResult(Result):
 
 
 class ToothErrorsResult(Result):
-    """Tooth to tooth, over a turn of either gear: at the orders of its turns, with and without load."""
+    """Contribution of teeth that deviate from the others of their gear to the transmission error, with
+    and without load.
+    """
 
     STAGE: ClassVar = "tooth_errors"
 
     def table(self) -> pd.DataFrame:
-        """One row an order of a gear's turns: amplitude (um) of the drive flank's transmission error.
+        """One row a body and order of its turn: amplitude (um) of the drive flank's transmission error,
+        with and without load.
 
         Columns, among others: order, unloaded_um, loaded_um.
 

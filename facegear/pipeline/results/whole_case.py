@@ -45,9 +45,13 @@ NOT_REPORTED = ("mesh", "mesh_law")
 
 @dataclass(frozen=True, eq=False)
 class WholeCase:
-    """A case by its chain, which must know all cases of the config.
+    """All that a case's config asks for: it computes stages in order, and writes report, files and
+    figures.
 
-    `failures`: reasons why stages could not be computed, by stage.
+    - chain: stages of the case; it must know all cases of the config
+    - on_stage: called with name and summary of each stage as soon as it is known
+    - records: of each stage that is known, rule, summary, seconds and versions, for the report
+    - failures: reasons why stages could not be computed, by stage
     """
 
     chain: Chain
@@ -196,11 +200,15 @@ class WholeCase:
         return paths
 
     def _stages_made(self) -> list[Stage]:
-        """Return the stages that the config asks for."""
+        """Return the rows of all stages that a plain run of the case makes, in the order of the table."""
         return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
 
     def _computable(self, stages: list[Stage]) -> list[Stage]:
-        """Stages that could be computed; the others are noted in `failures`."""
+        """Compute stages, and return those that did not fail; the others are noted in `failures`, with
+        the reason.
+
+        A missing library is raised, as the machine is not at fault.
+        """
         for stage in stages:
             try:
                 self._output(stage)
@@ -213,13 +221,17 @@ class WholeCase:
         return [stage for stage in stages if stage.name not in self.failures]
 
     def _note_failure(self, name: str, reason: str) -> None:
-        """Store and announce that a stage could not be computed; a known reason is not repeated."""
+        """Store and announce that a stage could not be computed; a reason that was announced before is
+        not repeated.
+        """
         is_known = reason in self.failures.values()
         self.failures[name] = reason
         self.on_stage(name, f"{NOT_COMPUTED}: {'for the same reason' if is_known else reason}")
 
     def _output(self, stage: Stage) -> StageOutput:
-        """Return the output of a stage; it is recorded the first time."""
+        """Return the output of a stage; the first time it is added to `records` and announced by
+        `on_stage`.
+        """
         start = time.perf_counter()
         output = self.chain.output(stage.name)
         if stage.name not in [record["rule"] for record in self.records]:
@@ -230,7 +242,9 @@ class WholeCase:
         return output
 
     def _page(self, folder: Path, stages: list[Stage]) -> str:
-        """Write the report from the outputs of the given stages."""
+        """Return the report as the text of an HTML page, from the given stages; their figures are
+        written to `folder`.
+        """
         for stage in stages:
             self._output(stage)
         table_files = reported_tables(self.chain.case)
@@ -256,11 +270,13 @@ class WholeCase:
         )
 
     def _figure_names(self, stage: Stage) -> Sequence[str]:
-        """Names of all figures of a stage."""
+        """Return the names of all figures of a stage, none if it draws none."""
         return stage.figures.figure_names(self.chain.case) if stage.figures else ()
 
     def _figures(self, stage: Stage) -> Iterator[tuple[str, Any]]:
-        """Draw the figures of a stage; yield each with its name."""
+        """Describe the figures of a stage from its stored parts; yield name and description (`Figure`)
+        of each.
+        """
         names = self._figure_names(stage)
         if stage.figures is None or not names:
             return
@@ -271,7 +287,11 @@ class WholeCase:
         yield from zip(names, figures, strict=True)
 
     def _draw_stage(self, stage: Stage, folder: Path) -> Iterator[tuple[str, Path]]:
-        """Write the figures of a stage, as svg and interactive; yield the name and svg of each."""
+        """Write the figures of a stage to `folder`, each as svg and as json (interactive); yield name
+        and svg path.
+
+        An error is passed over if a stage has failed, as the figure then shows that stage.
+        """
         try:
             for name, figure in self._figures(stage):
                 path = folder / f"{name}.svg"
@@ -282,24 +302,26 @@ class WholeCase:
                 raise
 
     def _part(self, stage: str, file: str) -> Any:
-        """Return a part of a stage; None where it is not asked for or has failed."""
+        """Return the content of a file of a stage; None where a plain run does not make the stage, or
+        it has failed.
+        """
         is_there = asked_for(stage, self.chain.case) and stage not in self.failures
         return self.chain.part(stage, file) if is_there else None
 
     def _view(self) -> Any:
-        """Return the view of the pair in mesh, if contact was computed."""
+        """Return the interactive view of the pair in mesh; None without a contact analysis."""
         if (loads := self._part("contact", "pressure")) is None:
             return None
         stress, friction = self._part("root_stress", "stress"), self._part("lubrication", "local")
         return shown_pair(self.chain.values, self.chain.part("contact", "ltca"), loads, stress, friction)
 
     def _bodies(self) -> Any:
-        """Return the view of mode shapes, if gears that bend were computed."""
+        """Return the interactive view of the mode shapes of face gears; None where none bends."""
         if (shapes := self._part("gear_bodies", "shapes")) is None:
             return None
         return body_view(self.chain.part("gear_bodies", "modes"), shapes)
 
 
 def _is_reported(stage: Stage) -> bool:
-    """Whether the report shows a table or a figure of a stage."""
+    """Whether the report shows a table of a stage, or its figures; NOT_REPORTED are for other programs."""
     return stage.name in REPORT_TABLES or (stage.figures is not None and stage.name not in NOT_REPORTED)

@@ -37,26 +37,29 @@ def contact(
     tooth_pair: ToothPair,
     contact: Contact,
 ) -> Outcome:
-    """Solve the loaded tooth contact at every position and torque.
+    """Solve the loaded tooth contact at every position of a pitch and every torque, on condensed FE
+    compliances.
 
-    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks are
-    solved where assembly errors make them differ from it, on the same compliances.
+    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks
+    are solved where assembly errors make them differ from it, on the same compliances.
 
     Parameters
     ----------
     pinion : Arrays
-        Compliance of the pinion's flank, arrays of stage compliance.
+        Arrays of stage compliance for the pinion: surface and compliance of its flank.
     face_gear : Arrays
-        Compliance of the face gear's flank, arrays of stage compliance.
+        Arrays of stage compliance for the face gear.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
-        Section `contact` of the config.
+        Section `contact` of the config: torques (N m on the pinion), positions, options of the solver.
 
     Returns
     -------
     Outcome
-        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+        Tables `ltca` (a row a torque and position), `by_torque` and `by_flank`, described by
+        `ContactResult`. Arrays `pressure` (PRESSURE_ARRAYS) and `loads` (nodal forces on both bodies,
+        LOAD_ARRAYS).
 
     Raises
     ------
@@ -80,7 +83,8 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; all but `by_flank` and
+        `loads` of the upper gear's drive flank.
     """
     return {
         "ltca": analysis.ltca[0],
@@ -92,7 +96,10 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
-    """Mean stiffness, or why there is none, and the share of the fillets from FILLET_CONTACT on."""
+    """Say the mean average stiffness of a contact table, or why there is none, for the summary.
+
+    Where fillets carry FILLET_CONTACT of the torque or more, their largest share is named as well.
+    """
     mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
     text = f"mean stiffness {format_number(1e-6 * mean)} N/um"
     if np.isnan(mean):
@@ -116,20 +123,22 @@ def contact_studies(
     Parameters
     ----------
     points : Sequence[Sequence[str]]
-        Study, point and label of each case, the machine itself first.
+        Study, point and label of each case; the machine itself (`nominal`) first.
     pair : Sequence[Mapping[str, Any]]
         Record `pair` of stage geometry of each case.
     ltca : Sequence[pd.DataFrame]
-        Table of stage contact of each case.
+        Table `ltca` of stage contact of each case.
     by_torque : Sequence[pd.DataFrame]
-        Table of stage contact of each case.
+        Table `by_torque` of stage contact of each case.
     pressure : Sequence[Arrays]
-        Arrays of stage contact of each case.
+        Arrays `pressure` of stage contact of each case.
 
     Returns
     -------
     Outcome
-        `table`, a row for each case and torque.
+        `table`, a row for each case and torque: study, point, label, the columns of `by_torque`, and
+        the shifts of the contact path from the machine itself (mm, positive outwards); see
+        `study_table` of `facegear.contact.summary`.
     """
     cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     table = study_table(cases)
@@ -147,7 +156,10 @@ ORDERS = 6
 def tooth_errors(
     pinion: Arrays, face_gear: Arrays, loads: Arrays, tooth_pair: ToothPair, torque: float
 ) -> Outcome:
-    """Compute how teeth that deviate from the others of their gear disturb the mesh over the hunting cycle.
+    """Compute how teeth that deviate from the others of their gear disturb the mesh.
+
+    The unloaded transmission error follows tooth pair by tooth pair over the hunting cycle. Under the
+    torque each gear's contribution is computed over one of its turns, with the loads of stage contact.
 
     Parameters
     ----------
@@ -156,17 +168,19 @@ def tooth_errors(
     face_gear : Arrays
         Compliance of the face gear's flank, arrays of stage compliance.
     loads : Arrays
-        Arrays `loads` of stage contact.
+        Arrays `loads` of stage contact: nodal forces by torque, position and flank.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     torque : float
-        Torque on the pinion, N m.
+        Torque on the pinion, N m, at which the loaded curves are taken.
 
     Returns
     -------
     Outcome
-        Arrays `curves`: what the teeth of each gear add to the transmission error under the torque, over one
-        of its turns. Table `orders`: amplitudes of the first orders of either gear, with and without load.
+        Arrays `curves`, `<body>_<flank>_m` for both bodies and flanks: what its teeth add to the
+        transmission error under the torque, at even positions of one turn, m, positive where teeth come
+        early. Table `orders`: body, order of its turn (1 to ORDERS), unloaded_um and loaded_um,
+        amplitudes on the drive flank; only bodies whose teeth differ.
 
     Raises
     ------
@@ -216,7 +230,9 @@ def tooth_errors(
 
 
 def _curve_orders(curve: Array) -> Array:
-    """Return the amplitudes of the first ORDERS orders of a curve over one period."""
+    """Return the amplitudes (ORDERS,) of orders 1 to ORDERS of a curve over one period, in the unit of
+    the curve.
+    """
     return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
 
 
@@ -232,7 +248,12 @@ def mesh_law(
     contact: Contact,
     mesh_stiffness: MeshStiffness,
 ) -> Outcome:
-    """Compute the load-dependent mesh law of every flank that errors make differ from the others.
+    """Compute the load-dependent mesh law: force of a flank over its deflection and the phase of the
+    mesh.
+
+    Contact is solved over a pitch at more torques. Tables of cubics over deflection with Fourier series
+    over phase are fitted to forces and slopes. A law is made for every flank that errors make differ
+    from the others.
 
     Parameters
     ----------
@@ -241,7 +262,8 @@ def mesh_law(
     face_gear : Arrays
         Compliance of the face gear's flank, arrays of stage compliance.
     ltca : pd.DataFrame
-        Table of stage contact, which decides by how much source fem_scaled scales.
+        Table `ltca` of stage contact; with source fem_scaled it decides the factor on all forces (see
+        `_scale`).
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
@@ -252,7 +274,9 @@ def mesh_law(
     Returns
     -------
     Outcome
-        Arrays `law` and table `levels`.
+        Arrays `law` (LAW_ARRAYS: levels in m, series of force in N and of slope in N/m, table of each
+        flank). Table `levels`: mean force and slope at each level by gear and flank, see
+        `MeshLawResult.table`.
 
     Raises
     ------
@@ -286,14 +310,15 @@ def mesh_law(
 def flank_contacts(
     model: ContactModel, positions: int, largest: float, options: ContactOptions = DEFAULT
 ) -> FlankContacts:
-    """Solve the contact of a flank over a pitch, for a law up to the largest torque.
+    """Solve the contact of a flank over a pitch at the t torques that a law up to the largest torque
+    needs.
 
     Parameters
     ----------
     model : ContactModel
         Contact model of the flank.
     positions : int
-        Number of even positions of a pitch.
+        Number p of even positions of a pitch.
     largest : float
         Largest torque of the law, N m.
     options : ContactOptions
@@ -302,7 +327,8 @@ def flank_contacts(
     Returns
     -------
     FlankContacts
-        Forces (torques,) in N, approach in m and local stiffness in N/m (torques, positions).
+        Forces along the line of action (t,), N; approach beyond first contact (t, p), m; local
+        stiffness (t, p), N/m.
 
     Raises
     ------
@@ -317,9 +343,13 @@ def flank_contacts(
         raise FacegearError("mesh law: there is none, as the teeth interfere")
 
     def by_torque(values: list[float]) -> np.ndarray:
+        """Arrange values that come position by position as an array (torques, positions)."""
         return np.array(values).reshape(positions, len(torques)).T
 
     def approach(contact: LoadedPosition) -> float:
+        """Return how far a loaded position has closed beyond first contact, m: loaded less unloaded
+        transmission error.
+        """
         return contact.ste - contact.unloaded_error
 
     return FlankContacts(
@@ -330,8 +360,11 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """Return the factor by which source fem_scaled multiplies forces and slopes: the factor of stage
-    stiffness on k.
+    """Return the factor on forces and slopes of the law: 1, but with source fem_scaled the given mean
+    stiffness over the computed.
+
+    The computed one is the mean over a pitch at the torque and by the definition of the request, as in
+    stage stiffness.
     """
     if request.source != "fem_scaled":
         return 1.0

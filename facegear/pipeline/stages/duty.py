@@ -28,22 +28,26 @@ def duty_loads(
 ) -> Outcome:
     """Compute the mesh forces of the running machine in every bin of its duty cycle.
 
-    K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share of the bin's load, K_v the
-    largest force over that mean.
+    A machine whose runouts turn is followed through its hunting cycle, any other to its steady state.
+    K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share of the bin's load,
+    K_v the largest force over that mean.
 
     Parameters
     ----------
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from; the torque is set bin by bin.
     accuracy : Accuracy
         Section `dynamics.accuracy` of the config.
     strength : Strength or None
-        Section `strength` of the config, None if it has none.
+        Section `strength` of the config with the duty cycle (torque, speed, hours of each bin), None if
+        it has none.
 
     Returns
     -------
     Outcome
-        Tables `duty_loads` and `duty_spectrum`.
+        Table `duty_loads` (DUTY_LOAD_COLUMNS): a row a bin and flank that carries load, bins from 1.
+        Table `duty_spectrum` (DUTY_SPECTRUM_COLUMNS): fraction of tooth passages by class of force, for
+        each bin, body and flank.
 
     Raises
     ------
@@ -92,21 +96,23 @@ def duty_poses(
     inputs: MachineInputs,
     strength: Strength | None,
 ) -> Outcome:
-    """Compute the contact pose of every mesh under the load of every bin of the duty cycle.
+    """Compute where the contact of every mesh lies under the mean load of every bin of the duty cycle.
 
     Parameters
     ----------
     surface : Arrays
-        Arrays of stage pose_surface.
+        Arrays `surface` of stage pose_surface.
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from; the torque is set bin by bin.
     strength : Strength or None
         Section `strength` of the config, None if it has none.
 
     Returns
     -------
     Outcome
-        `duty_poses`, a row for each bin, mesh and flank, with COLUMNS.
+        `duty_poses`, a row for each bin (from 1), mesh and flank, with COLUMNS. force_n is along the
+        line of action, not negative, 0 on the flank that does not carry; stiffness_factor is the
+        stiffness over the machine's own.
 
     Raises
     ------

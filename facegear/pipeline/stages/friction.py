@@ -45,14 +45,15 @@ def lubrication(
     lubrication: LubricationSection | None,
     speed_rpm: float,
 ) -> Outcome:
-    """Compute sliding, loss, heat, film and scuffing from stored contact.
+    """Compute sliding, loss, heat, film and scuffing of one mesh from its stored contact, at the
+    nominal speed.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table `ltca` of stage contact.
+        Table `ltca` of stage contact: contact by torque and position.
     pressure : Arrays
-        Arrays `pressure` of stage contact.
+        Arrays `pressure` of stage contact: loads and pressures of contact lines.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     lubrication : LubricationSection or None
@@ -63,7 +64,10 @@ def lubrication(
     Returns
     -------
     Outcome
-        Tables `by_torque`, `positions`, `limits`, `map` and `excitation`, arrays `local`.
+        Tables `by_torque`, `positions`, `limits` and `map` (over torque and speed), described by
+        `FrictionResult`. Table `excitation`: force and moments of friction over the mesh force by
+        torque and position, with which the motion is excited. Arrays `local` (LOCAL_ARRAYS): quantities
+        of every loaded plane.
 
     Raises
     ------
@@ -124,7 +128,8 @@ def loaded_pair(
     section: LubricationSection,
     tooth_pair: ToothPair,
 ) -> LoadedPair:
-    """Return the stored contact of the pair with its sliding, by torque.
+    """Join the stored contact of the pair with how it is lubricated; its `states(speed)` solve friction
+    at a speed in rad/s.
 
     Parameters
     ----------
@@ -140,7 +145,7 @@ def loaded_pair(
     Returns
     -------
     LoadedPair
-        The loaded and lubricated pair.
+        Contact at every solved torque, and its lubrication.
     """
     return LoadedPair(contacts_of(ltca, pressure, tooth_pair), lubrication_of(section, tooth_pair))
 
@@ -148,12 +153,13 @@ def loaded_pair(
 def friction_studies(
     points: Sequence[Sequence[str]], meshes: Sequence[pd.DataFrame], machine: Sequence[pd.DataFrame]
 ) -> Outcome:
-    """Collect loss, temperature and film of the studies' cases side by side.
+    """Collect loss, temperature and film of the studies' cases side by side, each at its nominal load
+    at rest (bin 0).
 
     Parameters
     ----------
     points : Sequence[Sequence[str]]
-        Study, point and label of each case, the machine itself first.
+        Study, point and label of each case; the machine itself (`nominal`) first.
     meshes : Sequence[pd.DataFrame]
         Table `meshes` of stage machine_loss of each case.
     machine : Sequence[pd.DataFrame]
@@ -162,7 +168,9 @@ def friction_studies(
     Returns
     -------
     Outcome
-        `table`, a row for each case at its nominal load: loss of the machine, and its hottest mesh.
+        `table`, a row for each case: study, point, label, speed, power, loss of the machine, its
+        hottest mesh with contact temperature and scuffing safety, smallest film ratio of all meshes,
+        and whether all torques lie within those solved. Columns are FRICTION_STUDY_COLUMNS.
     """
     rows = []
     for point, by_mesh, whole in zip(points, meshes, machine, strict=True):
@@ -193,7 +201,10 @@ def machine_loss(
     strength: Strength | None,
     speed_rpm: float,
 ) -> Outcome:
-    """Compute loss and heat at the nominal load at rest and in every bin of the duty cycle.
+    """Compute friction loss and heat of the machine at the nominal load at rest and in every bin of the
+    duty cycle.
+
+    Mesh loads decide losses; friction itself is left out of the equilibrium that gives these loads.
 
     Parameters
     ----------
@@ -202,11 +213,13 @@ def machine_loss(
     pressure : Arrays
         Arrays `pressure` of stage contact.
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from.
     duty_loads : pd.DataFrame or None
-        Table of stage duty_loads, where the loads of the duty cycle are the machine's.
+        Table `duty_loads` of stage duty_loads, where the loads of the duty cycle are the machine's;
+        without it bin 0 is all.
     response : pd.DataFrame or None
-        Table of stage dynamics_response, where friction acts on the motion.
+        Table `response` of stage dynamics_response, where friction acts on the motion; it gives column
+        loss_in_motion_w of bin 0.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     lubrication : LubricationSection or None
@@ -219,7 +232,9 @@ def machine_loss(
     Returns
     -------
     Outcome
-        Tables `meshes`, `bodies` and `machine`.
+        Tables `meshes` (a row a bin and loaded flank), `bodies` (a row a bin and body) and `machine` (a
+        row a bin); bin 0 is the nominal load at rest, -1 the whole duty cycle. `MachineLossResult`
+        lists the columns.
 
     Raises
     ------
@@ -263,7 +278,13 @@ def _states(
     strength: Strength | None,
     speed_rpm: float,
 ) -> Iterator[MachineState]:
-    """The machine at its nominal load at rest, then in every bin of its duty cycle."""
+    """Yield the loss of the machine at its nominal load at rest (bin 0), then in bins 1, 2, ... of its
+    duty cycle.
+
+    The bins follow only where `duty_loads` and `strength` are given. Torques on the pinion by each
+    loaded flank are the mean ones; peaks are the largest forces of the bin times the application
+    factor, at rest the mean again.
+    """
     machine = inputs.build()
     table = mesh_table(machine, speed_rpm)
     table = table[table["flank"] != "open"]
@@ -290,7 +311,12 @@ def _state(
     torque: Array,
     peak: Array,
 ) -> MachineState:
-    """Compute losses and temperatures of the machine in one bin of the duty cycle."""
+    """Return losses and temperatures of the machine in one bin.
+
+    `key` holds number of the bin, hours (nan for bin 0) and pinion speed, rpm. `names` hold mesh and
+    flank of each of the n loaded flanks; `torque` and `peak` (n,) are mean and largest torque of each
+    on the pinion, N m, not negative.
+    """
     layout = machine.layout
     number, hours, speed_rpm = key
     of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]

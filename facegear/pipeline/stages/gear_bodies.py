@@ -34,7 +34,8 @@ from facegear.schema.transmission import Transmission
 def gear_bodies(
     transmission: Transmission, tooth_pair: ToothPair, speed_rpm: float, last_rpm: float
 ) -> Outcome:
-    """Compute modes and compliance of the face gears that bend, with their hubs held.
+    """Solve the finite element section of every face gear that bends: modes and compliance with its hub
+    fixed.
 
     Parameters
     ----------
@@ -45,12 +46,14 @@ def gear_bodies(
     speed_rpm : float
         Nominal speed of the pinions, rpm.
     last_rpm : float
-        Largest pinion speed for crossings, rpm.
+        Largest pinion speed up to which crossings of modes and mesh harmonics are listed, rpm.
 
     Returns
     -------
     Outcome
-        Tables `bodies`, `modes`, `crossings`, `compliance` and `influence`, arrays `reduced`, `shapes`.
+        Tables `bodies`, `modes`, `crossings`, `compliance` and `influence`, described by
+        `GearBodiesResult`. Arrays `reduced`: modal matrices from which the machine is built; arrays
+        `shapes`: nodes and mode shapes for pictures.
 
     Raises
     ------
@@ -85,7 +88,9 @@ def gear_bodies(
 
 
 def _fitted_layers(sections: Mapping[str, BodySection], bodies: Mapping[str, SolvedBody]) -> str:
-    """Describe the tooth layers whose stiffness was fitted."""
+    """Describe the tooth layers whose stiffness was fitted: density and stiffness as fractions of the
+    solid ring's.
+    """
     parts = []
     for gear, section in sections.items():
         if section.teeth == "fitted" and (layer := bodies[gear].section.layer) is not None:
@@ -95,10 +100,12 @@ def _fitted_layers(sections: Mapping[str, BodySection], bodies: Mapping[str, Sol
 
 
 def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout) -> str:
-    """Warn where a body deflects by more than the backlash: contacts then open or close that the config did
-    not intend.
+    """Return a warning where a body deflects at a mesh by more than the backlash, otherwise an empty
+    text.
 
-    The load is that of the pinion with the largest torque, shared evenly by its meshes.
+    Contacts then open or close that the config did not intend. Deflection is the body's compliance at a
+    mesh times a force: the largest pinion torque over the pinion's lever arm, shared evenly by its
+    meshes.
     """
     torque = float(np.abs(given_torques(transmission, machine)).max())
     force = torque / machine.pinion_arm / len(machine.gears)
@@ -110,12 +117,16 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
 
 
 def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
-    """Reduce a face gear that bends to its modes, with the teeth's contact patch and damping."""
+    """Reduce a solved body to the matrices of its modes, with the patch on which teeth press and with
+    its damping.
+    """
     return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
 
 
 def _solve_bodies(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
-    """Solve every gear's body; equal bodies are solved once."""
+    """Solve the finite element body of every gear, by gear name; gears with equal sections share one
+    solution.
+    """
     bodies: dict[BodySection, SolvedBody] = {}
     for section in sections.values():
         if section not in bodies:
@@ -136,8 +147,10 @@ def _parts(
     machine: Layout,
     speeds_rpm: tuple[float, float],
 ) -> dict[str, pd.DataFrame]:
-    """Return the tables of one gear: modes at a pinion speed, and crossings with mesh harmonics up to the
-    last one.
+    """Return the five tables of one gear (bodies, modes, crossings, compliance, influence) by name.
+
+    `speeds_rpm` holds the pinion speed at which the waves of modes are given, and the last one for
+    crossings with mesh harmonics.
     """
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
@@ -159,7 +172,7 @@ def _parts(
 
 
 def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
-    """Say in one line mass and lowest frequency of each gear."""
+    """Say in one line mass, lowest frequency and compliance at a mesh of each gear."""
     parts = []
     for row in bodies.itertuples():
         gear_modes = modes[modes["gear"] == row.gear]
@@ -181,23 +194,26 @@ def gear_waves(
     speed_rpm: float,
     last_rpm: float,
 ) -> Outcome:
-    """Compute the modes of the machine about its static load, with meshes at their mean stiffness.
+    """Compute damped modes of the machine, linear about its static load, while face gears that bend
+    turn.
 
-    The modes are those at the nominal speed; the Campbell diagram goes from rest to `last_rpm`.
+    Meshes have their mean stiffness. Modes are tabulated at the nominal speed; the Campbell diagram
+    goes from rest to `last_rpm` in SPEEDS even steps, with the nominal speed beside.
 
     Parameters
     ----------
     machine : Machine
-        The machine.
+        The machine with at least one face gear that bends.
     speed_rpm : float
         Nominal speed of the pinions, rpm.
     last_rpm : float
-        Last speed of the Campbell diagram, rpm.
+        Last pinion speed of the Campbell diagram, rpm.
 
     Returns
     -------
     Outcome
-        Tables `waves`, `campbell` and `campbell_crossings`.
+        Tables `waves` (a row a mode, gear and nodal diameters), `campbell` (a row a speed and mode) and
+        `campbell_crossings` (with mesh harmonics), described by `GearWavesResult`.
 
     Raises
     ------
@@ -230,7 +246,9 @@ def gear_waves(
 
 
 def _left_out(machine: Machine) -> str:
-    """Return what motion leaves out between flanks, as a force at rest and a change of frequencies."""
+    """Say how far mesh forces at rest (N) change if the compliance between meshes that motion neglects
+    is counted.
+    """
     reduced_forces, full_forces = (
         mean_equilibrium(variant).forces[0] for variant in (machine, at_rest(machine))
     )

@@ -39,7 +39,7 @@ def ratings(
     machine: Machine,
     speed_rpm: float,
 ) -> Outcome:
-    """Compute ratio, speeds, torques and powers.
+    """Compute gear ratio, speeds, torques and powers of the machine at rest under its mean torques.
 
     Parameters
     ----------
@@ -51,7 +51,9 @@ def ratings(
     Returns
     -------
     Outcome
-        Tables `ratings`, `bodies` and `meshes`.
+        Table `ratings` (quantity, value), `bodies` (torque, speed, power of each body, positive if
+        brought in) and `meshes` (force along the line of action, N, negative on the back flank; torque
+        on the pinion; power to the gear).
 
     Raises
     ------
@@ -76,27 +78,31 @@ def modal(
     source: str,
     definition: str,
 ) -> Outcome:
-    """Compute natural frequencies and mode shapes with the mean mesh stiffness.
+    """Compute natural frequencies and mode shapes of the machine, linear, with constant mesh stiffness.
 
-    With the stiffness stage's `harmonics` it is the mean of `definition` at the operating load, without them
-    the config's own mean. With the arrays `law` of stage mesh_law every mesh has its local stiffness under
-    its own load instead.
+    The stiffness is that of stage stiffness, its mean by `definition` at the operating load, if
+    `inputs.harmonics` is its table; otherwise it is `mean_stiffness`. With a load-dependent mesh law
+    (`inputs.law`) every mesh has its local stiffness under its own mean load instead. The transmission
+    error plays no part.
 
     Parameters
     ----------
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from: its section, the teeth, and results of earlier stages.
     mean_stiffness : float or None
-        Mean mesh stiffness of the config, N/m; None if it gives none.
+        Mean mesh stiffness of the config, N/m; None if it gives none. It is used where no harmonics are
+        given.
     source : str
-        Source of the mesh stiffness in the config.
+        Source of the mesh stiffness in the config, such as `harmonics` or `fem_scaled`; it decides only
+        how the stiffness is named in column `definition` and in the summary.
     definition : str
-        `local` or `average`.
+        `local` (slope of force over approach) or `average` (force over approach).
 
     Returns
     -------
     Outcome
-        Tables `frequencies`, `shapes` and `contacts`.
+        Tables `frequencies` (a row a mode), `shapes` (a row a mode and coordinate) and `contacts` (a
+        row a mesh or bearing with clearance). `ModesResult` lists their columns.
 
     Raises
     ------
@@ -135,7 +141,12 @@ def modal(
 
 
 def _remarks(contacts: pd.DataFrame, is_decided: np.ndarray) -> str:
-    """Remarks on contacts that are not simply closed."""
+    """Return text for the summary on contacts that are open, wedged or undecided, and on frequencies
+    that depend on undecided ones.
+
+    `contacts` is the table of contacts with columns contact and state. `is_decided` (modes,) is False
+    where a frequency differs between undecided contacts taken as open and as closed.
+    """
     parts = []
     for state in ("open", "wedged", "undecided"):
         if names := contacts.loc[contacts["state"] == state, "contact"].to_list():
@@ -148,17 +159,20 @@ def _remarks(contacts: pd.DataFrame, is_decided: np.ndarray) -> str:
 def shafts(
     inputs: MachineInputs,
 ) -> Outcome:
-    """Compute shafts and torsional springs with the machine at rest under its torques.
+    """Compute load and deflection of shafts and the twist of torsional springs, with the machine at
+    rest under its mean torques.
 
     Parameters
     ----------
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from.
 
     Returns
     -------
     Outcome
-        Tables `seats`, `stiffness`, `bearings`, `deflections` and `torsion`.
+        Tables `seats` (displacement and slope of each pinion's seat), `stiffness` (its 5 x 5
+        stiffness), `bearings` (forces and moments), `deflections` (along each shaft) and `torsion`
+        (twist and frequencies of turning masses). `ShaftsResult` lists their columns.
 
     Raises
     ------
@@ -223,25 +237,31 @@ def shaft_orders(
     first_rpm: float,
     last_rpm: float,
 ) -> Outcome:
-    """Compute the vibration of the machine at the orders of its gears' turns.
+    """Compute the vibration of the machine at the orders of its gears' turns, and under its periodic
+    torques.
+
+    It is linear about the static load: contacts stay as they are there, and the mesh stiffness is its
+    mean. Runouts, pitch deviations and single teeth excite it at multiples of a gear's speed of
+    rotation.
 
     Parameters
     ----------
     machine : Machine
-        The machine.
+        The machine, with geometric meshes.
     speed_rpm : float
         Nominal speed of the pinions, rpm.
     first_rpm : float
-        First speed of `over_speed` and `excited`, rpm.
+        First speed of the pinions in `over_speed` and `excited`, rpm.
     last_rpm : float
-        Last speed of `over_speed` and `excited`, rpm.
+        Last speed of the pinions in `over_speed` and `excited`, rpm; SPEEDS even speeds are taken.
 
     Returns
     -------
     Outcome
-        Table `orders` at the nominal speed. Table `over_speed`: the mesh with the largest force of each of
-        the largest orders. Table `excited`: amplitudes of mesh forces and of torques of springs under each
-        periodic torque, at the nominal speed and over speed.
+        Table `orders` (COLUMNS): a row an order and mesh at the nominal speed. Table `over_speed`
+        (OVER_SPEED): at each speed, the mesh with the largest force at each of the orders with the
+        largest errors. Table `excited` (EXCITED): amplitudes of mesh forces (N) and of torques of
+        springs (N m) under each periodic torque, first at the nominal speed, then over speed.
 
     Raises
     ------
@@ -252,6 +272,9 @@ def shaft_orders(
     orders, machine_under_load = turn_orders(machine), loaded_machine(machine)
 
     def amplitudes(selection: TurnOrders, speed: float) -> np.ndarray:
+        """Return the force amplitude (orders, meshes), N, of the flank of each mesh that carries load,
+        at a pinion speed (rpm).
+        """
         return mesh_amplitudes(
             machine_under_load.forces(selection, speed, layout.pinion_teeth), machine_under_load.contact_mask
         )
@@ -285,7 +308,12 @@ def shaft_orders(
 
 
 def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) -> pd.DataFrame:
-    """Amplitudes at each speed: forces of meshes, torques of torsional springs by the mass behind them."""
+    """Tabulate the linear response to each periodic torque at each pinion speed (rpm); columns EXCITED.
+
+    A row a speed, torque and mesh has the amplitude of the mesh force (N), torque_n_m being nan. A row
+    a speed, torque and torsional spring has the amplitude of the spring's torque with its damping, |k +
+    i omega c| |twist| (N m), force_n being nan; `part` is then the mass behind the spring.
+    """
     layout, line = machine.layout, machine.drive_line
     springs = [] if line is None else line.springs()
     rows: list[tuple[object, ...]] = []
@@ -306,13 +334,22 @@ def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) ->
 
 
 def _key(orders: TurnOrders, row: int, frequency: float) -> tuple[str, int, float, float]:
-    """Return the columns that identify an order of turns: gear, order, order of mesh, frequency, Hz."""
+    """Return gear, order, order as a multiple of the mesh frequency, and frequency (Hz), for one row of
+    `orders`.
+
+    `frequency` is the mesh frequency, Hz.
+    """
     of_mesh = float(orders.of_mesh[row])
     return orders.turning[row], int(orders.order[row]), of_mesh, of_mesh * frequency
 
 
 def _largest(orders: TurnOrders) -> list[int]:
-    """Rows of each gear's largest errors: low orders of its turn, and orders about the mesh frequency."""
+    """Return the rows of `orders` that are followed over speed: for each gear the ORDERS_PER_GEAR with
+    the largest errors.
+
+    As many are taken among low orders as among those within half the mesh frequency of it. The error of
+    an order is the largest of all flanks.
+    """
     size, rows = np.abs(orders.error).max(axis=1), []
     about = np.abs(orders.of_mesh - 1.0) < 0.5
     for gear in dict.fromkeys(orders.turning):

@@ -58,21 +58,25 @@ def dynamics_response(
     accuracy: Accuracy,
     speed_rpm: float,
 ) -> Outcome:
-    """Compute the response at one speed.
+    """Integrate the motion of the machine at one speed to its steady state, and tabulate it.
+
+    A class of motion that is in doubt must come out again from SECOND_LOOKS other starts.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     accuracy : Accuracy
-        Section `dynamics.accuracy` of the config.
+        Section `dynamics.accuracy` of the config: tolerances and lengths of the integration.
     speed_rpm : float
         Speed of the pinions, rpm.
 
     Returns
     -------
     Outcome
-        Tables `response`, `spectrum`, `summary`, `multipliers` and `bearings`.
+        Tables `response` (deflection and force of each mesh over time), `spectrum` (amplitude by
+        multiple of the mesh frequency), `summary` (the numbers that a sweep keeps), `multipliers`
+        (Floquet multipliers; empty if not periodic) and `bearings`. `ResponseResult` lists the columns.
 
     Raises
     ------
@@ -98,14 +102,18 @@ def dynamics_sweep_chunk(
     machine: Machine,
     sweep: Sweep,
 ) -> Outcome:
-    """Compute one chunk of a sweep.
+    """Compute one chunk of a sweep: steady states at a range of speeds, each from the state at the
+    speed before it.
+
+    A sweep is cut into chunks of speeds that run in parallel. Each starts some speeds early, so that
+    its first state is forgotten where the chunk before it ends.
 
     Parameters
     ----------
     direction : str
         Direction of the sweep, `up` or `down`.
     number : int
-        Number of the chunk.
+        Number of the chunk, from 0, in the order of running.
     machine : Machine
         The machine.
     sweep : Sweep
@@ -114,7 +122,8 @@ def dynamics_sweep_chunk(
     Returns
     -------
     Outcome
-        Arrays `chunk`.
+        Arrays `chunk`: results at the speeds of the overlap and at the chunk's own speeds, as
+        `to_arrays` of `facegear.motion.sweeps.whole_sweep` stores them.
 
     Raises
     ------
@@ -136,7 +145,10 @@ def dynamics_sweep(
     sweep: Sweep,
     threads: int = 1,
 ) -> Outcome:
-    """Join the chunks of a sweep.
+    """Join the chunks of a sweep, and find its jumps and resonances.
+
+    Jumps are bracketed to the resolution that the config asks for, by more speeds between two of the
+    sweep.
 
     Parameters
     ----------
@@ -147,12 +159,14 @@ def dynamics_sweep(
     sweep : Sweep
         Section `sweep` of the config.
     threads : int
-        Number of threads.
+        Number of threads that compute jumps and seams; results do not depend on it.
 
     Returns
     -------
     Outcome
-        Tables `sweep`, `jumps`, `resonances` and `seams`, arrays `waterfall`.
+        Tables `sweep` (a row a direction, speed, quantity and body or mesh), `jumps`, `resonances` and
+        `seams` (where chunks met, and whether one was run again). `SweepResult` lists the columns.
+        Arrays `waterfall`: see `_waterfall`.
     """
     model = build_model(machine)
     plan, layout = sweep_plan(sweep), model.machine.layout
@@ -171,7 +185,11 @@ def dynamics_sweep(
 
 
 def _waterfall(directions: Mapping[str, Direction]) -> dict[str, AnyArray]:
-    """Return speeds, orders and amplitudes of the spectra of each direction as arrays."""
+    """Return spectra of the mesh deflections by name of the array.
+
+    `orders` (o,) are multiples of the mesh frequency. For each direction there are
+    `<direction>_speed_rpm` (p,) in the order of running, and `<direction>_amplitude_m` (p, meshes, o).
+    """
     arrays = {"orders": ORDERS}
     for name, direction in directions.items():
         arrays[f"{name}_speed_rpm"] = direction.piece.speeds
@@ -185,23 +203,26 @@ def branches_starts(
     branches: Branches | None,
     speed_rpm: float,
 ) -> Outcome:
-    """Find the motions that random starts end on, at one of the speeds of the config.
+    """Integrate the motion from random initial states at one speed, and count on which steady motions
+    they end.
 
     Parameters
     ----------
     number : int
-        Index of the speed, from 0.
+        Index of the speed among `branches.explore.speeds_rpm`, from 0; without such speeds 0 stands for
+        the nominal one.
     machine : Machine
         The machine.
     branches : Branches or None
         Section `branches` of the config, None if it has none.
     speed_rpm : float
-        Nominal speed of the pinions, rpm.
+        Nominal speed of the pinions, rpm, from which defaults of the section follow.
 
     Returns
     -------
     Outcome
-        Arrays `motions`.
+        Arrays `motions`: the different motions, with the fraction of starts that ends on each and its
+        standard error.
 
     Raises
     ------
@@ -227,7 +248,10 @@ def branches(
     sweep: Sweep,
     speed_rpm: float,
 ) -> Outcome:
-    """Follow branches of periodic motions over the speed, from random starts and from the sweep.
+    """Follow branches of periodic motions over the speed, stable or not, by continuation.
+
+    They begin at the periodic motions on which random starts end, at those of the sweep, and at period
+    doublings and branch points that are met on the way.
 
     Parameters
     ----------
@@ -236,7 +260,8 @@ def branches(
     chunks : Iterable[Arrays]
         Arrays of the sweep's chunks, direction by direction in the order of the config.
     jumps : pd.DataFrame
-        Table `jumps` of stage dynamics_sweep.
+        Table `jumps` of stage dynamics_sweep; those within the range of speeds are explained by special
+        points.
     machine : Machine
         The machine.
     branches : Branches or None
@@ -244,13 +269,16 @@ def branches(
     sweep : Sweep
         Section `sweep` of the config.
     speed_rpm : float
-        Nominal speed of the pinions, rpm.
+        Nominal speed of the pinions, rpm, about which margins are counted and from which defaults of
+        the section follow.
 
     Returns
     -------
     Outcome
-        Tables `branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`,
-        `swept` and `jumps`, arrays `orbits`.
+        Tables `branches` (a row a branch, point and mesh), `ends`, `unfollowed` (motions on no branch),
+        `multipliers`, `special` (folds and other bifurcations), `coexistence`, `ranges`, `margins`,
+        `swept` and `jumps`; `BranchesResult` describes them. Arrays `orbits`: the special points with
+        their states, which stage branches_loci follows.
 
     Raises
     ------
@@ -297,12 +325,13 @@ def branches_loci(
     branches: Branches | None,
     speed_rpm: float,
 ) -> Outcome:
-    """Follow folds and period doublings in the plane of speed and a second parameter.
+    """Follow folds and period doublings while speed and a second parameter (torque, backlash, ...)
+    change together.
 
     Parameters
     ----------
     orbits : Arrays
-        Arrays of the special points, of stage branches.
+        Arrays `orbits` of stage branches: the special points with their states.
     machine : Machine
         The machine.
     branches : Branches or None
@@ -313,7 +342,8 @@ def branches_loci(
     Returns
     -------
     Outcome
-        Table `loci`.
+        Table `loci`: a row a point of a curve, with the parameter, the factor on it and the speed; see
+        `BranchLociResult`.
     """
     model = build_model(machine)
     plan = branch_plan(branches, speed_rpm)
@@ -324,23 +354,29 @@ def branches_loci(
 def law_loads(
     levels: pd.DataFrame, response: pd.DataFrame, summary: pd.DataFrame, sweep: pd.DataFrame
 ) -> Outcome:
-    """Compare the mesh forces with the levels of the mesh law.
+    """Compare the mesh forces of the running machine with the last level of the load-dependent mesh
+    law.
+
+    Beyond its last level the law is extrapolated linearly, so that this tells whether it reaches far
+    enough.
 
     Parameters
     ----------
     levels : pd.DataFrame
-        Table of stage mesh_law.
+        Table `levels` of stage mesh_law.
     response : pd.DataFrame
-        Table of stage dynamics_response.
+        Table `response` of stage dynamics_response, mesh forces over time.
     summary : pd.DataFrame
-        Table of stage dynamics_response.
+        Table `summary` of stage dynamics_response.
     sweep : pd.DataFrame
-        Table of stage dynamics_sweep.
+        Table `sweep` of stage dynamics_sweep.
 
     Returns
     -------
     Outcome
-        Table `loads`, a row for each mesh.
+        Table `loads`, a row for each mesh: mesh, flank, mean force at the last level, smallest, mean
+        and largest force at the nominal speed (N), and the largest fraction of the time past the last
+        level, there and in the sweep.
     """
     table = law_loads_table(levels, response, summary, sweep)
     ratio = (table["largest_n"] / table["last_level_n"]).max()

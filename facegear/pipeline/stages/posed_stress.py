@@ -39,23 +39,25 @@ def posed_stress(
     contact: Contact,
     gears: Sequence[str],
 ) -> Outcome:
-    """Solve the contact at the pose of every mesh, at the torques of the contact analysis and at the mesh's
-    own.
+    """Solve the contact and root stress at the pose of every mesh under the machine's mean torques.
+
+    Meshes with the same pose are solved once. The torques are those of the contact analysis and the
+    mesh's own. The relative error of root stress is taken over from the pair as assembled.
 
     Parameters
     ----------
     surface : Arrays
-        Arrays of stage pose_surface.
+        Arrays `surface` of stage pose_surface.
     pinion : Arrays
         Compliance of the pinion's flank, arrays of stage compliance.
     face_gear : Arrays
         Compliance of the face gear's flank, arrays of stage compliance.
     stress : Arrays
-        Arrays of stage root_stress, of the pair as assembled.
+        Arrays `stress` of stage root_stress, of the pair as assembled.
     by_flank : pd.DataFrame
         Table `by_flank` of stage contact, of the pair as assembled.
     machine : Machine
-        The machine.
+        The machine as assembled.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
@@ -66,7 +68,10 @@ def posed_stress(
     Returns
     -------
     Outcome
-        Tables `by_mesh` and `by_torque`, arrays `contacts`.
+        Table `by_mesh` (see `_by_mesh`). Table `by_torque`: mesh, flank, contact, then the columns of
+        stage contact's `by_torque`. Arrays `contacts`: root stress of each solved contact
+        (`root_arrays_of`), name, number of the contact and carrying flank (0 drive, 1 back) of each
+        mesh, and the poses of `_contact_poses`.
 
     Raises
     ------
@@ -117,7 +122,13 @@ def posed_stress(
 
 
 def _contact_poses(machine: Any, surface: PoseSurface, result: OperatingPose) -> dict[str, AnyArray]:
-    """Contact pose of both flanks of every mesh, and of its other flank as assembled."""
+    """Return where the unloaded contact of the m meshes lies, as arrays.
+
+    `mesh_torque_n_m` (m,) on the pinion; `path_m` (m, 2), place along the pinion on drive and back
+    flank at the pose, nan where flanks do not meet; `angle_rad` (m,), error of the shaft angle.
+    `path_at_rest_m` and `angle_at_rest_rad` (m,) are those of the flank that does not carry, as
+    assembled.
+    """
     back = result.forces < 0.0
     paths, rest = [], []
     for mesh in range(back.size):
@@ -141,7 +152,13 @@ def _by_mesh(
     assembled_contacts: Any,
     gears: Sequence[str],
 ) -> pd.DataFrame:
-    """Stress of every mesh at its own torque, at its pose and as assembled."""
+    """Tabulate pressure and root stress of every mesh at its own torque, at its pose and as assembled.
+
+    `contacts` are those at the pose, one a mesh; `assembled_contacts` hold those as assembled by gear
+    and flank. A row a mesh: mesh, flank that carries, torque_n_m, unloaded_path_mm, then pressure_mpa,
+    pinion_root_mpa, face_gear_root_mpa and the same with `_as_assembled`. Stresses are 0 without a
+    torque.
+    """
     rows = []
     for mesh, (name, contact) in enumerate(zip(names, contacts, strict=True)):
         flank, torque = FLANKS[int(result.forces[mesh] < 0.0)], float(result.torque[mesh])
@@ -162,7 +179,9 @@ def _by_mesh(
 
 
 def _summary(table: pd.DataFrame) -> str:
-    """Say in one line by how much the pose changes root stress at the worst mesh."""
+    """Say in one line by how much the pose changes the face gear's root stress at the mesh where it
+    changes most.
+    """
     loaded_meshes = table[table["torque_n_m"] > 0.0]
     if loaded_meshes.empty:
         return "no mesh carries a load"

@@ -50,7 +50,12 @@ def pose_surface(
     torque_n_m: float,
     tilting: bool,
 ) -> Outcome:
-    """Solve the contact of the pair at every node of the pose surface.
+    """Solve the loaded contact of the pair at every node of the pose surface.
+
+    A pose of a mesh comes down to two numbers: the error of the shaft angle, and the path, which is the
+    place of the unloaded contact along the pinion. The nodes are a grid of angles, paths and torques.
+    At each angle and path the contact is solved at all torques over a pitch; later stages interpolate
+    between the nodes.
 
     Parameters
     ----------
@@ -61,16 +66,17 @@ def pose_surface(
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
-        Section `contact` of the config.
+        Section `contact` of the config; its largest torque is the last node of the torques.
     torque_n_m : float
         Torque at which the machine takes its mesh stiffness, N m.
     tilting : bool
-        Whether the machine's bodies tilt or bend.
+        Whether bodies of the machine may tilt or bend; otherwise the shaft angle has one node.
 
     Returns
     -------
     Outcome
-        Arrays `surface`, tables `nodes` and `errors`.
+        Arrays `surface` (`PoseSurface.arrays`, SI units), table `nodes` (see `node_table`) and table
+        `errors` (see `error_table`).
 
     Raises
     ------
@@ -106,21 +112,26 @@ def pose_surface(
 def quantities(
     design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, Array]:
-    """Return the QUANTITIES that are known of one pose.
+    """Compute the QUANTITIES of the pose surface at one pose: stiffness, transmission error, pressure,
+    radius, root stress.
+
+    Stiffness is the mean of a pitch, transmission error its peak-to-peak value, pressure and root
+    tension the largest of a pitch. Root stress is there for bodies whose fillets carry gauges.
 
     Parameters
     ----------
     design : PairDesign
         Design of the pair.
     flanks : tuple[GearFlank, GearFlank]
-        Compliance of the pinion and of the face gear.
+        Surface and compliance of the pinion's and of the face gear's flank.
     posed_contact : PosedContact
-        Contact at the pose.
+        Contact solved at the pose at t torques.
 
     Returns
     -------
     dict[str, Array]
-        (torques,) each, by name, in SI units. A quantity that is not positive at every torque is left out.
+        (t,) each, by name, in N/m, m and Pa. A quantity that is not positive at every torque is left
+        out.
 
     Raises
     ------
@@ -142,7 +153,13 @@ def quantities(
 
 
 def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
-    """Mean average stiffness (t,), counted from the contact of flanks extended beyond their ends."""
+    """Return the mean over a pitch of the average mesh stiffness at each torque (t,), N/m.
+
+    It is force over approach. Force is torque over the base radius; approach is the loaded less the
+    unloaded transmission error. For unmodified flanks the unloaded error is the closed form of flanks
+    extended beyond the ends of the face; otherwise it is that of the contact table. Raises
+    FacegearError where an approach is not positive.
+    """
     table = posed_contact.ltca
     unloaded_error = 1e-6 * table["unloaded_ste_um"]
     exact = contact_at(PairNumbers.of_design(design), posed_contact.errors)
@@ -167,12 +184,13 @@ def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) 
     values : Mapping[str, Array]
         Values (angles, paths, torques) at the nodes by quantity, in SI units.
     offsets : list[float]
-        Offset of each pose, um.
+        Offset of each pose, m, angle by angle and path by path.
 
     Returns
     -------
     pd.DataFrame
-        A row for each node.
+        A row for each angle, path and torque (the torque changes fastest): shaft_angle_error_deg,
+        offset_um, unloaded_path_mm, torque_n_m, then the quantities in SI units.
     """
     angle, path, torque = np.meshgrid(nodes.angles, nodes.paths, nodes.torques, indexing="ij")
     coordinates = {
@@ -185,17 +203,21 @@ def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) 
 
 
 def error_table(surface: PoseSurface) -> pd.DataFrame:
-    """Tabulate the error of the surface at nodes that are left out of it.
+    """Tabulate the interpolation error of the surface: each inner node is left out and interpolated
+    from the others.
+
+    As the distance of nodes is doubled there, the errors bound those of the whole surface.
 
     Parameters
     ----------
     surface : PoseSurface
-        The surface.
+        The surface with its values at all nodes.
 
     Returns
     -------
     pd.DataFrame
-        A row for each quantity and coordinate.
+        A row for each quantity and each coordinate (`left_out`: path or torque) along which a node was
+        left out: `largest` and `rms` error, relative, but in m for the radius of the path.
     """
     rows = [
         (name, over, float(np.abs(differences).max()), float(np.sqrt(np.mean(differences**2))))
@@ -213,11 +235,13 @@ def operating_pose(
     tooth_pair: ToothPair,
     contact: Contact,
 ) -> Outcome:
-    """Solve the contact at the pose of every mesh under its load.
+    """Find the pose of every mesh under the machine's mean torques, and solve the contact directly
+    there.
 
-    `meshes` tells how far each contact pattern stays from every edge. The arrays are the contact of the mesh
-    that its pose changes most, in the form of stage contact's pressures; `check` compares them with the
-    surface.
+    Pose and forces are a fixed point: forces displace the bodies, and displaced bodies change the mesh
+    stiffness that the pose surface gives. The contact of every mesh is then solved once at its pose and
+    torque, without root stress. This gives the distances of its pattern to every edge, and checks the
+    surface for the mesh whose stiffness its pose changes most.
 
     Parameters
     ----------
@@ -228,7 +252,7 @@ def operating_pose(
     face_gear : Arrays
         Compliance of the face gear's flank, arrays of stage compliance.
     machine : Machine
-        The machine.
+        The machine as assembled.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     contact : Contact
@@ -237,7 +261,10 @@ def operating_pose(
     Returns
     -------
     Outcome
-        Tables `meshes`, `loads`, `leaving` and `check`, arrays `as_assembled` and `running`.
+        Tables `meshes` (a row a mesh), `loads` (paths over fractions of the torques), `leaving`
+        (contacts that leave the face) and `check` (the surface beside the direct contact).
+        `OperatingPoseResult` describes their columns. Arrays `as_assembled` and `running` hold
+        pressures of that one mesh in both positions, as PRESSURE_ARRAYS of stage contact.
 
     Raises
     ------
@@ -285,7 +312,11 @@ def operating_pose(
 def _direct(
     design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, AnyArray]:
-    """Return the quantities of a pose surface, and the REACTIONS, from contact solved directly at a pose."""
+    """Return the QUANTITIES and the REACTIONS of contact solved directly at one pose, (t,) each by
+    name, in SI units.
+
+    REACTIONS are forces and a moment of the touching loads on the gear (N, N m).
+    """
     table = posed_contact.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
     return {**quantities(design, flanks, posed_contact), **dict(zip(REACTIONS, table.T, strict=True))}
 
@@ -293,9 +324,12 @@ def _direct(
 def _check(
     surface: PoseSurface, result: OperatingPose, mesh: int, direct: list[dict[str, AnyArray]]
 ) -> pd.DataFrame:
-    """Compare the surface at the pose of a mesh with the contact solved there, a row for each quantity.
+    """Compare the surface at the pose of one mesh with the contact that was solved there.
 
-    Reactions of the surface follow from its energy; beside them stand the reactions of the touching loads.
+    `direct` holds the results of `_direct` as assembled, then at the pose, each at one torque. A row a
+    quantity: quantity, surface, direct, direct_as_assembled (SI units) and surface_error_percent = 100
+    (surface / direct - 1). Reactions of the surface are derivatives of its energy; the direct ones are
+    sums of the touching loads.
     """
     at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
     at_pose = {name: surface.at(name, *at) for name in surface.values if name in direct[1]}

@@ -20,7 +20,7 @@ from facegear.studies.machines import WHOLE
 def search_island(
     seed: int, partial: str | Path | None = None, code: str = "", **machine_fields: Any
 ) -> Outcome:
-    """Evolve designs from one seed.
+    """Evolve designs from one seed by NSGA-II; several seeds give independent islands.
 
     Parameters
     ----------
@@ -29,14 +29,15 @@ def search_island(
     partial : str or Path or None
         File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
     code : str
-        Identity of the code; rows in `partial` count only for the same config and code.
+        Fingerprint of the code; rows in `partial` count only for the same config and code.
     **machine_fields : Any
-        Fields of SearchedMachine.
+        Fields of SearchedMachine, as plain config values and arrays.
 
     Returns
     -------
     Outcome
-        Table `designs`: every design tried, its generation, its goals, the error where it has none.
+        Table `designs`, a row for every design tried: values of the variables, generation, goals
+        (objectives and limited quantities), error (empty if there is none).
     """
     machine = SearchedMachine.of_stage(**machine_fields)
     section = machine.section
@@ -57,19 +58,22 @@ def search_island(
 
 
 def search(islands: Sequence[pd.DataFrame], **machine_fields: Any) -> Outcome:
-    """Join the designs of all islands and compute winners of their front at full accuracy.
+    """Join the designs of all islands, find their Pareto front, and compute its winners at full
+    accuracy.
 
     Parameters
     ----------
     islands : Sequence[pd.DataFrame]
-        Designs of each island, in the order of the config's seeds.
+        Table `designs` of each island, in the order of the config's seeds.
     **machine_fields : Any
-        Fields of SearchedMachine.
+        Fields of SearchedMachine, as plain config values and arrays.
 
     Returns
     -------
     Outcome
-        Tables `designs`, `front`, `hypervolume` and `winners`.
+        Tables `designs` (all, with column seed), `front` (designs that hold every limit and that no
+        other beats in all objectives), `hypervolume` (by seed and generation) and `winners` (see
+        `_winners`).
     """
     machine = SearchedMachine.of_stage(**machine_fields)
     search_task, by_seed = task(machine.section), dict(zip(machine.section.seeds, islands, strict=True))
@@ -88,7 +92,7 @@ def search(islands: Sequence[pd.DataFrame], **machine_fields: Any) -> Outcome:
 
 
 def _spread(volumes: pd.DataFrame) -> str:
-    """Say in words how far the hypervolumes of different seeds lie apart."""
+    """Say by how many percent the hypervolumes of different seeds differ after their last generation."""
     if volumes.empty:
         return "none of them holds every limit"
     last = volumes.groupby("seed")["hypervolume"].last()
@@ -97,8 +101,10 @@ def _spread(volumes: pd.DataFrame) -> str:
 
 
 def _winners(best: pd.DataFrame, search_task: Task, machine: SearchedMachine) -> pd.DataFrame:
-    """Return the nominal design and the winners of the front: goals as searched, and all quantities at full
-    accuracy.
+    """Tabulate the nominal design and the winners of the front.
+
+    Columns: design (label), variables, goals at full accuracy, `<goal>_searched` as the search computed
+    them with few samples and mesh cycles, then all other quantities at full accuracy.
     """
     coarse = assessor(machine, machine.section.hunting_cycles, machine.section.samples)
     full = assessor(machine, WHOLE, machine.section.winner_samples)
@@ -115,28 +121,33 @@ def _winners(best: pd.DataFrame, search_task: Task, machine: SearchedMachine) ->
 
 
 def _nominal(machine: SearchedMachine) -> list[float]:
-    """Return the values of the variables in the config; nan where the keys of a variable differ."""
+    """Return the value of each variable in the config; nan where a variable sets several keys whose
+    values differ.
+    """
     free = [variable.sets for variable in machine.section.variables]
     start = movable(machine.values, [key for keys in free for key in keys])
     return [nominal(start, keys) for keys in free]
 
 
 def choose_winners(best: pd.DataFrame, search_task: Task) -> dict[str, tuple[float, ...]]:
-    """Choose designs of a front: the best in each objective, and of several objectives the nearest to all
-    bests.
+    """Choose designs of a front: the best in each objective, and a compromise if there are several
+    objectives.
+
+    The compromise is nearest to the point of all best values, each objective over its range on the
+    front.
 
     Parameters
     ----------
     best : pd.DataFrame
-        Designs of the front, a row each.
+        Designs of the front, a row each, with a column for each variable and objective.
     search_task : Task
         Variables and objectives of the search.
 
     Returns
     -------
     dict[str, tuple[float, ...]]
-        Values of the variables of each design, each in its own unit, by the name of what it is best in; empty
-        for an empty front.
+        Values of the variables of each design, in their own units, by label: `least <objective>`, `most
+        <objective>` or `compromise`. Empty for an empty front.
     """
     if best.empty:
         return {}

@@ -41,23 +41,29 @@ def load_sharing(
     speed_rpm: float,
     options: LoadSharing,
 ) -> Outcome:
-    """Compute the load sharing at one speed.
+    """Compute the load-sharing coefficients of the running machine at one speed, averaged over its
+    motion.
+
+    A coefficient of a group of meshes that share a load is the largest mesh load over the mean of the
+    group.
 
     Parameters
     ----------
     machine : Machine
         The machine.
     accuracy : Accuracy
-        Section `dynamics.accuracy` of the config.
+        Section `dynamics.accuracy` of the config: tolerances and lengths of the integration.
     speed_rpm : float
         Speed of the pinions, rpm.
     options : LoadSharing
-        Section `load_sharing` of the config.
+        Section `load_sharing` of the config: how long, and from how many starts, it is averaged.
 
     Returns
     -------
     Outcome
-        Tables `curve`, `summary` and `forces`.
+        Tables `curve` (coefficient of each group over a mesh cycle), `summary` (a row a group) and
+        `forces` (mean and largest force of each mesh, N). `LoadSharingResult` lists the columns of the
+        first two.
 
     Raises
     ------
@@ -92,16 +98,17 @@ def load_sharing_summary(
     Parameters
     ----------
     points : Sequence[Sequence[str]]
-        Study, point and label of every point.
+        Study, point and label of every point, without the machine itself.
     summaries : Sequence[pd.DataFrame]
-        Tables `summary` of stage load_sharing, that of the machine itself first.
+        Tables `summary` of stage load_sharing: that of the machine itself first, then one a point.
     curves : Sequence[pd.DataFrame]
-        Tables `curve` of the points alone.
+        Tables `curve` of stage load_sharing, one a point.
 
     Returns
     -------
     Outcome
-        `summary` (table) of all, and `studies` (a table of curves for each study).
+        `summary`: table of all, with study, point and label in front. `studies`: a list with one table
+        of curves for each study, in the order of the config.
     """
     keys = [(study, point) for study, point, _ in points]
     labels = {(study, point): label for study, point, label in points}
@@ -120,19 +127,21 @@ def load_sharing_summary(
 def study_forces(
     points: Sequence[tuple[str, str, str, str, str, float]], tables: Sequence[pd.DataFrame]
 ) -> Outcome:
-    """Collect mean and largest mesh forces of the cases of studies over numbers.
+    """Collect mean and largest mesh forces of the cases of studies whose axis is a number.
 
     Parameters
     ----------
     points : Sequence[tuple[str, str, str, str, str, float]]
-        Study, point, label of the number, label on the other axis, key and number of every point.
+        Study, point, label of the axis with its unit, label of the point on the study's other axis,
+        config key and number of every point, as `numbered_points` lists them.
     tables : Sequence[pd.DataFrame]
-        `load_sharing/forces.csv` of each point.
+        Table `forces` of stage load_sharing of each point.
 
     Returns
     -------
     Outcome
-        Table `forces`, a row for each point and mesh.
+        Table `forces`, a row for each point and mesh: study, point, axis, beside, key, number, then the
+        columns of stage load_sharing's `forces`.
     """
     parts = []
     for point, table in zip(points, tables, strict=True):
@@ -153,7 +162,7 @@ def load_sharing_reference(
     range_accuracy: Accuracy,
     options: LoadSharing,
 ) -> Outcome:
-    """Compute the load sharing at rest, running slowly, and over a range of speeds.
+    """Compute reference values of load sharing: at rest, running slowly, and over a range of speeds.
 
     Parameters
     ----------
@@ -169,7 +178,8 @@ def load_sharing_reference(
     Returns
     -------
     Outcome
-        Tables `reference` and `speeds`.
+        Table `reference`: coefficients of the machine at rest and running slowly. Table `speeds`: a row
+        a speed and group with the mean coefficient.
 
     Raises
     ------
@@ -194,19 +204,26 @@ def hunting(
     machine: Machine,
     positions: int,
 ) -> Outcome:
-    """Compute the quasi-static load sharing over the hunting cycle.
+    """Compute the quasi-static load sharing over the hunting cycle, position by position, with statics
+    alone.
+
+    The hunting cycle is the number of mesh cycles until the pattern of errors repeats, 1 where no error
+    turns with a body. Damping and inertia play no part.
 
     Parameters
     ----------
     machine : Machine
-        The machine.
+        The machine, with geometric meshes; its bodies are taken at rest.
     positions : int
-        Number of positions in a mesh cycle.
+        Number of positions in each mesh cycle.
 
     Returns
     -------
     Outcome
-        Tables `meshes`, `groups`, `bearings`, `cycles`, `scan` and `sensitivity`.
+        Tables `meshes` and `groups` (loads and K_gamma), `bearings` (forces, N), `cycles` (mean load of
+        each mesh by mesh cycle, N), described by `HuntingResult`. Tables `scan` (K_gamma against
+        bearing stiffness) and `sensitivity` (change of K_gamma per um of each error), described by
+        `SensitivityResult`.
 
     Raises
     ------
@@ -244,7 +261,11 @@ def following(
     positions: int,
     cycles: int | None,
 ) -> Outcome:
-    """Compute the load sharing of the running machine while its runouts and pitch deviations turn.
+    """Integrate the running machine through mesh cycles of its hunting cycle, while runouts and pitch
+    deviations turn.
+
+    K_gamma is the largest mean load of a mesh cycle over the even share, K_v the largest load over that
+    mean. Both stand beside the quasi-static K_gamma of the whole hunting cycle.
 
     Parameters
     ----------
@@ -255,15 +276,15 @@ def following(
     speed_rpm : float
         Nominal speed of the pinions, rpm.
     positions : int
-        Number of positions of a mesh cycle of the machine at rest; the running machine has FINER times as
-        many samples.
+        Number of positions of a mesh cycle of the machine at rest; the running machine has FINER times
+        as many samples.
     cycles : int or None
-        Number of mesh cycles, None for the whole hunting cycle.
+        Number of mesh cycles that are followed, at most the hunting cycle; None for all of it.
 
     Returns
     -------
     Outcome
-        Tables `groups` and `meshes`.
+        Tables `groups` and `meshes`, described by `FollowingResult`.
 
     Raises
     ------
@@ -302,7 +323,11 @@ def sharing_map(
     sharing_map: SharingMap | None,
     torques: Sequence[float],
 ) -> Outcome:
-    """Compute the map of load sharing of the machine at rest.
+    """Compute the map of load sharing of the machine at rest: K_gamma over the numbers that decide it.
+
+    For idlers the number is k_e sigma / W (path stiffness times deviation over load), for inputs 2 b k
+    / W (backlash times mesh stiffness over load). The machine is placed on the map at its own torque
+    and at `torques`.
 
     Parameters
     ----------
@@ -311,12 +336,15 @@ def sharing_map(
     sharing_map : SharingMap or None
         Deviations and points; None for their defaults.
     torques : sequence of float
-        Torques of an input in each of its meshes that the duty cycle has, N m; none without one.
+        Further torques of an input in each of its meshes, from the duty cycle, N m; unused where no
+        torque is given per input.
 
     Returns
     -------
     Outcome
-        Tables `curves`, `inputs`, `points`, `advice`, `reasons`. Raises NotConverged.
+        Tables `curves` (idlers), `inputs`, `points` (the machine's places), `advice` (changes that were
+        tried) and `reasons` (why the closed form may not hold), described by `SharingMapResult`. Raises
+        NotConverged.
     """
     section, transmission = sharing_map or SharingMap(), inputs.transmission
     options, nominal = map_options(section), inputs.build()
@@ -342,13 +370,17 @@ def sharing_map(
 
 
 def _torque(transmission: Transmission, machine: Machine) -> float:
-    """Torque of an input, or of the first face gear of a machine without inputs, N m."""
+    """Return the torque of an input over all its meshes, or without inputs that of the first face gear;
+    a magnitude, N m.
+    """
     torque = abs(transmission.torque.per_input_n_m)
     return torque or float(abs(machine.torques[len(machine.layout.pinions)]))
 
 
 def _largest(points: pd.DataFrame, kind: GroupKind) -> float:
-    """Return the largest number on the map of a kind of group, 0 if it has no points."""
+    """Return the largest number k_e sigma / W or 2 b k / W among the points of one kind of group, 0 if
+    it has none.
+    """
     return (
         float(points.loc[points["kind"] == kind.value, "number"].max())
         if kind.value in set(points["kind"])

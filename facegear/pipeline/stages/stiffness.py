@@ -19,12 +19,14 @@ def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -
     mesh_stiffness : MeshStiffness
         Section `mesh_stiffness` of the config.
     ltca : pd.DataFrame or None
-        Table `ltca` of stage contact, None for the harmonics of the config.
+        Table `ltca` of stage contact; None where the config gives harmonics.
 
     Returns
     -------
     Outcome
-        Tables `tvms`, `harmonics` and `spectrum`.
+        Tables `tvms` (k over a pitch, and its series), `harmonics` (series of k and of the transmission
+        error) and `spectrum` (amplitudes of all orders). `StiffnessResult` lists the columns of the
+        first two.
 
     Raises
     ------
@@ -42,7 +44,8 @@ def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -
 
 
 def load_dependence(ltca: pd.DataFrame) -> Outcome:
-    """Compute mean and variation of the mesh stiffness at every torque.
+    """Compute mean and variation over a pitch of the mesh stiffness at every torque, by both
+    definitions.
 
     Parameters
     ----------
@@ -52,7 +55,8 @@ def load_dependence(ltca: pd.DataFrame) -> Outcome:
     Returns
     -------
     Outcome
-        `table`.
+        `table`, a row a torque and definition (`average` or `local`), with mean_n_per_m (N/m) among its
+        columns.
     """
     table = table_of(load_table(ltca))
     means = table.loc[table["definition"] == "average", "mean_n_per_m"]

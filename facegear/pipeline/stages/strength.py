@@ -51,20 +51,23 @@ def root_stress(
     mesh: Mesh,
     contact: Contact,
 ) -> Outcome:
-    """Compute the root stress of both gears on their way through the mesh.
+    """Compute the stress at the fillets of both gears while a tooth passes through the mesh, at each
+    solved torque.
 
-    Tables `summary`, `passage` and `along_face` belong to the drive flank of the upper gear. The error of the
-    planes along the face is measured with twice their distance; it is not known where such a mesh cannot be
-    made or its contact not be solved.
+    Stress is superposed: nodal contact forces of stage contact times the readings of the gauges per
+    unit force. Forces on fillets are left out. Tables `summary`, `passage` and `along_face` belong to
+    the drive flank of the upper gear. The discretisation error along the face is estimated by a second
+    solution with planes twice as far apart. It is nan where such a mesh cannot be made or its contact
+    not be solved.
 
     Parameters
     ----------
     pinion : Arrays
-        Compliance of the pinion's flank, arrays of stage compliance.
+        Arrays of stage compliance for the pinion: surface, compliance and gauges of its flank.
     face_gear : Arrays
-        Compliance of the face gear's flank, arrays of stage compliance.
+        Arrays of stage compliance for the face gear.
     loads : Arrays
-        Arrays `loads` of stage contact.
+        Arrays `loads` of stage contact: nodal forces on both bodies by torque, position and flank.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     mesh : Mesh
@@ -75,7 +78,9 @@ def root_stress(
     Returns
     -------
     Outcome
-        Tables `summary`, `passage`, `along_face` and `by_flank`, arrays `stress`.
+        Tables `summary` (a row a torque, body and fillet), `passage` (over the passage of a tooth),
+        `along_face` and `by_flank` (`summary` for both flanks of both gears), arrays `stress`
+        (ROOT_STRESS_ARRAYS, Pa). `RootStressResult` lists the columns.
 
     Raises
     ------
@@ -92,16 +97,17 @@ def root_stress(
 def root_contents(
     flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
-    """Return the tables and arrays that stage root_stress stores.
+    """Build the tables and arrays that stage root_stress stores, for all flanks that differ.
 
     Parameters
     ----------
     flanks : Mapping[Body, GearFlank]
-        Compliance of both bodies.
+        Surface, compliance and gauges of both bodies.
     loads : Arrays
         Arrays `loads` of stage contact.
     face_errors : Mapping[Body, float]
-        Error of each body by its planes along the face, relative.
+        Relative error of root stress by the distance of planes along the face, by body; it is added to
+        the error of the mesh.
 
     Returns
     -------
@@ -124,14 +130,20 @@ def root_contents(
 
 
 def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_error: float) -> RootStress:
-    """Compute the root stress of a body over a passage; the error along the face is added to its own."""
+    """Return the root stress of a body over a passage, for one variant of the flanks.
+
+    `variant` is the index of a pair that errors make differ from the others, 0 for the upper gear's
+    drive flank. `face_error`, the relative error by planes along the face, is added to the error that
+    `passing` gives.
+    """
     root = passing(body, flank, loads, variant)
     return replace(root, error=root.error + face_error)
 
 
 def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
-    """Return the relative error of root stress by the planes along the face, by body; nan where it is not
-    known.
+    """Return the relative error of root stress by the distance of planes along the face, by body.
+
+    It is estimated from a solution with planes twice as far apart (Richardson); nan where that fails.
     """
     pair = setup.pair
     materials = {body: pair.material(body) for body in BODIES}
@@ -167,16 +179,20 @@ def dynamic_root_stress(
     posed_by_torque: pd.DataFrame | None = None,
     poses: Arrays | None = None,
 ) -> Outcome:
-    """Compute the root stress of every mesh at the nominal speed.
+    """Compute the root stress of every mesh at the nominal speed, from the mesh forces over time.
+
+    A tooth is quasi-static: at each instant it has the stress of the contact analysis at that force and
+    that position of the mesh cycle. The history is interpolated to FINER instants a sample, as peaks
+    lie between samples.
 
     Parameters
     ----------
     response : pd.DataFrame
-        Table of stage dynamics_response.
+        Table `response` of stage dynamics_response: force of each mesh over time.
     summary : pd.DataFrame
-        Table of stage dynamics_response.
+        Table `summary` of stage dynamics_response, which tells whether the history is one period.
     stress : Arrays
-        Arrays of stage root_stress.
+        Arrays `stress` of stage root_stress.
     by_flank : pd.DataFrame
         Table `by_flank` of stage contact.
     tooth_pair : ToothPair
@@ -184,22 +200,23 @@ def dynamic_root_stress(
     transmission : Transmission
         Section `transmission` of the config.
     teeth : ToothNumbers
-        Numbers of teeth.
+        Tooth numbers, module and pressure angle of the pair.
     gears : Sequence[str]
-        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its own gear
-        and flank.
+        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its
+        own gear and flank.
     posed_contacts : Arrays or None
-        Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
+        Arrays `contacts` of stage posed_stress; None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
         Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
     poses : Arrays or None
-        Arrays of stage pose_surface at the pose of the machine's mean torques, None unless its forces pose
-        the teeth.
+        Arrays of stage pose_surface at the pose of the machine's mean torques, None unless its forces
+        pose the teeth.
 
     Returns
     -------
     Outcome
-        Table `dynamic_stress`.
+        Table `dynamic_stress`, a row a mesh: largest stress over a passage with its mean force, the
+        largest while running, and a bound with its largest force; see `DynamicStressResult`.
     """
     phases = stiffness_phases(transmission, teeth)
     forces, positions, whole = {}, {}, shows_a_period(response, summary)
@@ -231,25 +248,29 @@ def stress_over_speed(
     posed_contacts: Arrays | None = None,
     posed_by_torque: pd.DataFrame | None = None,
 ) -> Outcome:
-    """Compute root stress and pressure over the sweep and, where there are any, the branches.
+    """Compute root stress and pressure under the largest mesh force at each speed, over the sweep and
+    stable branches.
+
+    The force is taken to act all through the passage, so that stresses are upper bounds. The dynamic
+    factor is the force over the largest mesh force at standstill.
 
     Parameters
     ----------
     sweep : pd.DataFrame
-        Table of stage dynamics_sweep.
+        Table `sweep` of stage dynamics_sweep.
     stress : Arrays
-        Arrays of stage root_stress.
+        Arrays `stress` of stage root_stress.
     by_flank : pd.DataFrame
         Table `by_flank` of stage contact.
     inputs : MachineInputs
-        What the machine is built from.
+        Everything that a machine is built from.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     gears : Sequence[str]
-        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its own
-        gear, on the flank where it is more.
+        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its
+        own gear, on the flank where it is more.
     branches : pd.DataFrame or None
-        Table of stage branches, None if there is none.
+        Table `branches` of stage branches, None if there is none.
     posed_contacts : Arrays or None
         Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
@@ -258,7 +279,8 @@ def stress_over_speed(
     Returns
     -------
     Outcome
-        Table `stress_over_speed`.
+        Table `stress_over_speed`: a row a speed and motion (a direction of the sweep or a branch);
+        `worst` marks the hardest at a speed. `StressOverSpeedResult` lists the columns.
 
     Raises
     ------
@@ -298,28 +320,32 @@ def rating(
     strength: Strength | None,
     gears: Sequence[str],
 ) -> Outcome:
-    """Compute safety, damage and life from the root stress.
+    """Compute safety against tooth breakage and pitting, damage and life of every flank under the duty
+    cycle.
 
-    Every flank is judged by the contacts that it has with the `gears` of the machine.
+    A flank is judged by the worst of the contacts that it has with the `gears` of the machine. Loads
+    are those of `duty_spectrum` where it is given, otherwise those of section `strength` with its own
+    factors. With pose arguments each load has the stress at the pose of its bin.
 
     Parameters
     ----------
     stress : Arrays
-        Arrays of stage root_stress.
+        Arrays `stress` of stage root_stress.
     by_flank : pd.DataFrame
         Table `by_flank` of stage contact.
     duty_spectrum : pd.DataFrame or None
-        Table of stage duty_loads, where the loads are the machine's.
+        Table `duty_spectrum` of stage duty_loads, where the loads are the machine's.
     mesh_losses : pd.DataFrame or None
-        Table `meshes` of stage machine_loss, where its flanks are lubricated.
+        Table `meshes` of stage machine_loss, where flanks are lubricated; with the spectrum it adds
+        scuffing and micropitting.
     posed_contacts : Arrays or None
         Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
     posed_by_torque : pd.DataFrame or None
         Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
     poses : Arrays or None
-        Arrays of stage pose_surface, None unless the machine's forces pose the teeth.
+        Arrays `surface` of stage pose_surface, None unless the machine's forces pose the teeth.
     duty_poses : pd.DataFrame or None
-        Table of stage duty_poses, None unless the machine's forces pose the teeth.
+        Table `duty_poses` of stage duty_poses, None unless the machine's forces pose the teeth.
     tooth_pair : ToothPair
         Section `tooth_pair` of the config.
     strength : Strength or None
@@ -330,7 +356,9 @@ def rating(
     Returns
     -------
     Outcome
-        Tables `safety`, `rating`, `damage` and `curves`.
+        Tables `safety` (a row a flank), `rating` (a row a flank, failure and method), `damage` (a row a
+        bin of the duty cycle for each of these) and `curves` (stress that may be repeated a number of
+        times). `RatingResult` lists the columns.
 
     Raises
     ------

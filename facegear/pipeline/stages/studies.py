@@ -41,32 +41,36 @@ def tolerances_chunk(
     code: str = "",
     **machine_fields: Any,
 ) -> Outcome:
-    """Compute samples `first` to `last` of a machine with its tolerances.
+    """Compute samples `first` to `last` of a machine with its tolerances: draw its errors and judge
+    each machine.
 
-    A sample that cannot be built or computed is a row with its error. For the first CHECKED_SAMPLES samples,
-    columns of CYCLE_SELECTION_ERRORS hold the errors by mesh cycles left out, and those of
-    SIMPLIFICATION_ERRORS the errors of computing friction at few contact points. They are empty in other
+    A sample is one machine whose causes (errors with a distribution) have drawn values. One that cannot
+    be built or computed is a row with its error. The first CHECKED_SAMPLES random samples are computed
+    a second time without simplifications: columns CYCLE_SELECTION_ERRORS hold the errors by mesh cycles
+    left out, SIMPLIFICATION_ERRORS those by few contact points of friction. They are empty in other
     rows.
 
     Parameters
     ----------
     design : Design
-        `samples`, or `indices` for those of the sensitivity indices.
+        `samples` for random ones, or `indices` for those of Saltelli's design, from which Sobol indices
+        follow.
     first : int
         Number of the first sample.
     last : int
-        Number of the last sample.
+        Number of the last sample, which is computed as well.
     partial : str or Path or None
         File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
     code : str
-        Identity of the code; rows in `partial` count only for the same config and code.
+        Fingerprint of the code; rows in `partial` count only for the same config and code.
     **machine_fields : Any
-        Fields of SampledMachine.
+        Fields of SampledMachine, as plain config values and arrays.
 
     Returns
     -------
     Outcome
-        Table `chunk`: values of the causes of each sample, the computed quantities, the error.
+        Table `chunk`, a row a sample: sample, values of the causes, computed quantities, error (empty
+        text if there is none).
     """
     return chunk_of(SampledMachine.of_stage(**machine_fields), design, first, last, partial, code)
 
@@ -79,32 +83,34 @@ def chunk_of(
     partial: str | Path | None = None,
     code: str = "",
 ) -> Outcome:
-    """Compute `tolerances_chunk` of a machine in memory.
+    """Compute the samples of `tolerances_chunk` for a SampledMachine that is there already.
 
     Parameters
     ----------
     machine : SampledMachine
         Machine with its tolerances.
     design : Design
-        `samples`, or `indices` for those of the sensitivity indices.
+        `samples` for random ones, or `indices` for those from which Sobol indices follow.
     first : int
         Number of the first sample.
     last : int
-        Number of the last sample.
+        Number of the last sample, which is computed as well.
     partial : str or Path or None
         File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
     code : str
-        Identity of the code; rows in `partial` count only for the same config and code.
+        Fingerprint of the code; rows in `partial` count only for the same config and code.
 
     Returns
     -------
     Outcome
-        Table `chunk`: values of the causes of each sample, the computed quantities, the error.
+        Table `chunk`, a row a sample: sample, values of the causes, computed quantities, error (empty
+        text if there is none).
     """
     draw = samples if design == "samples" else index_samples
     values = draw(machine.causes, first, last - first + 1)
 
     def evaluate(number: int) -> dict[str, float]:
+        """Return the quantities of the sample with this number, by name."""
         return machine.judge_sample(
             machine.sample(values[number - first]), design == "samples" and number < CHECKED_SAMPLES
         )
@@ -137,24 +143,28 @@ CHECKS = {
 def tolerances(
     samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Tolerances
 ) -> Outcome:
-    """Compute percentiles, fractions and importance from both designs of samples.
+    """Compute percentiles, fractions of bad machines, and the importance of causes, from all chunks of
+    samples.
 
-    `sampling` tells what the mesh cycles taken from the hunting cycle miss, in the samples that were computed
-    over the whole of it, and what friction misses that is taken at few places of the contact.
+    `sampling` tells what the mesh cycles taken from the hunting cycle miss, in the samples that were
+    computed over the whole of it, and what friction misses that is taken at few points of the contact.
 
     Parameters
     ----------
     samples : Sequence[pd.DataFrame]
-        Chunks of random samples.
+        Tables `chunk` of the random samples.
     indices : Sequence[pd.DataFrame]
-        Chunks of samples for sensitivity indices, empty if there are none.
+        Tables `chunk` of the samples for Sobol indices, empty if there are none.
     tolerances : Tolerances
         Section `tolerances` of the config.
 
     Returns
     -------
     Outcome
-        Tables `samples`, `percentiles`, `fractions`, `importance`, `indices` and `sampling`.
+        Tables `samples` (all random ones), `percentiles`, `fractions` (of machines with one of EVENTS),
+        `importance` (rank correlation with each cause), `indices` (Sobol) and `sampling` (what
+        simplifications miss, from the samples that were checked). `TolerancesResult` lists the columns
+        of most.
     """
     causes = [cause.name for cause in tolerances.causes]
     every = pd.concat(samples, ignore_index=True)
@@ -189,7 +199,9 @@ def tolerances(
 
 
 def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
-    """Say in words loss and contact temperature that 1 % of the samples exceed."""
+    """Return, in a list of one text, loss (W) and contact temperature (C) that 1 % of the samples
+    exceed; empty without friction.
+    """
     rows = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     if CONTACT_TEMPERATURE not in rows:
         return []
@@ -197,7 +209,9 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 
 
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
-    """Say in words the largest errors of the simplifications of the samples."""
+    """Return, as a list of texts, the largest errors by mesh cycles left out and by few contact points
+    of friction.
+    """
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
     cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]
@@ -222,7 +236,7 @@ COLUMNS = (
 
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_fields: Any) -> Outcome:
-    """Compute percentiles of every quantity at every torque and speed of a load map.
+    """Compute percentiles of every quantity at every torque and speed of section `tolerances.load_map`.
 
     The same machines are used at every load, so that differences between loads are no accident of the
     samples. The mesh stiffness stays that of mesh_stiffness.torque_n_m.
@@ -232,16 +246,17 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_
     partial : str or Path or None
         File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
     code : str
-        Identity of the code; rows in `partial` count only for the same config and code.
+        Fingerprint of the code; rows in `partial` count only for the same config and code.
     **machine_fields : Any
-        Fields of SampledMachine.
+        Fields of SampledMachine, as plain config values and arrays.
 
     Returns
     -------
     Outcome
-        Table `load_map`: percentiles at every load, with COLUMNS. Table `load_fractions`: fraction of the
-        machines that fail, open or change their flank there. Table `load_sampling`: what the mesh cycles
-        taken miss there, from CHECKED_SAMPLES samples at all loads together or one at each.
+        Table `load_map`: percentiles at every load, with COLUMNS; torque_factor multiplies the torques
+        of the config. Table `load_fractions`: fraction of the machines that fail, open or change their
+        flank there. Table `load_sampling`: what the mesh cycles taken miss there, from CHECKED_SAMPLES
+        samples at all loads together or one at each.
     """
     machine = SampledMachine.of_stage(**machine_fields)
     section = machine.section
@@ -250,6 +265,9 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_
     count, checks_per_load = load_map.samples * len(loads), max(CHECKED_SAMPLES // len(loads), 1)
 
     def at_load(values: Mapping[str, Any], factor: float, speed: float) -> dict[str, Any]:
+        """Return config values with all torques times `factor`, and the speed (rpm) plus what a cause
+        adds to the nominal one.
+        """
         off = values["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
         transmission = with_torques(values["transmission"], factor)
         return {**values, "transmission": transmission, "dynamics": {"speed_rpm": speed + off}}
@@ -257,6 +275,9 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_
     judges = [machine.judge_near(at_load(machine.start, *load)) for load in loads]
 
     def evaluate(number: int) -> dict[str, float]:
+        """Return the quantities of one machine at one load; `number` counts all machines at the first
+        load, then at the next.
+        """
         load, row = divmod(number, load_map.samples)
         sample = at_load(machine.sample(values[row]), *loads[load])
         return machine.judge_sample(sample, row < checks_per_load, judges[load])
@@ -288,5 +309,5 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_
 
 
 def _at_load(load: dict[str, float], table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with its load in front."""
+    """Return a table with torque_factor and speed_rpm of its load as first columns."""
     return table.assign(**load)[[*load, *table.columns]]

@@ -14,7 +14,7 @@ EASE_OFF_GRID = (37, 29)
 
 
 def geometry(tooth_pair: ToothPair) -> Outcome:
-    """Compute limits, contact path, backlash and smallest gaps of the tooth pair.
+    """Compute limits, contact path, backlash and smallest gaps of the unloaded tooth pair.
 
     Parameters
     ----------
@@ -24,7 +24,8 @@ def geometry(tooth_pair: ToothPair) -> Outcome:
     Returns
     -------
     Outcome
-        Record `pair`, arrays `flanks` and `contact`.
+        Record `pair` (a nested mapping of numbers, units in their names), arrays `flanks` (points of
+        both flanks) and `contact` (contact path, and the gaps around it, EASE_OFF_GRID).
 
     Raises
     ------
@@ -48,7 +49,8 @@ def geometry(tooth_pair: ToothPair) -> Outcome:
 
 
 def topography(tooth_pair: ToothPair) -> Outcome:
-    """Tabulate the deviation of the flanks of both gears.
+    """Tabulate the deviation of both flanks of both gears from the nominal flanks, as the config gives
+    it.
 
     Parameters
     ----------
@@ -58,8 +60,8 @@ def topography(tooth_pair: ToothPair) -> Outcome:
     Returns
     -------
     Outcome
-        Table `points`: nominal points and normals of both flanks of both gears, and the mean deviation of all
-        teeth there.
+        Table `points`: nominal points (mm) and unit normals of both flanks of both gears, and the mean
+        deviation of all teeth there, um. `TopographyResult.table` lists the columns.
 
     Raises
     ------

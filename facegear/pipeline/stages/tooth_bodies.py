@@ -24,7 +24,7 @@ KINDS = ("msh", "vtu", "inp")
 
 
 def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
-    """Write the finite element meshes of both bodies.
+    """Mesh both bodies with hexahedra, and write the meshes as files for other programs.
 
     Parameters
     ----------
@@ -36,7 +36,8 @@ def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
     Returns
     -------
     Outcome
-        `<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and table `quality`.
+        `<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and table `quality`: quantity
+        and value of each body, such as the scaled Jacobian and the number of elements.
     """
     content: dict[str, Any] = {}
     quality = []
@@ -53,7 +54,7 @@ def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
 
 
 def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:
-    """Build sectors of both bodies with the teeth that the config exports.
+    """Build the finite element meshes of both bodies, sectors with as many teeth as the config exports.
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:
     Returns
     -------
     dict[str, SectorMesh]
-        Sectors of `pinion` and `face_gear`.
+        Sectors by name, `pinion` and `face_gear`; at most all teeth of a gear.
     """
     design = pair(tooth_pair).design
     sizes = mesh_sizes(mesh, design.module)
@@ -171,7 +172,10 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
 
 
 def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> Outcome:
-    """Compute the compliance of the flank of one body, whatever loads it.
+    """Compute the condensed compliance of one body's flank by finite elements, with the gauges of its
+    fillets.
+
+    It does not depend on how the flank is loaded. All contact analyses of the pair use it.
 
     Parameters
     ----------
@@ -187,7 +191,8 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
     Returns
     -------
     Outcome
-        `arrays` of the flank.
+        `arrays` (see `to_arrays` of `facegear.contact.gear_flank`): surface points, compliance in m/N
+        between nodes of the flank and of neighbouring teeth, readings of gauges.
 
     Raises
     ------
