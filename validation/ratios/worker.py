@@ -172,10 +172,19 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
 
 
 def _machine(gearbox: Any) -> Any:
-    """Lumped machine of a gearbox; the baseline has a method of the gearbox for it."""
-    if hasattr(gearbox, "_machine"):
-        return gearbox._machine()
-    return import_module("facegear.door.outputs").machine_of(gearbox)
+    """Lumped machine of a gearbox; the baseline makes it of the inputs of its stage."""
+    try:
+        outputs = import_module("facegear.door.outputs")
+    except ModuleNotFoundError:
+        chain, store = from_facegear("Chain", "Store")
+        inputs = chain(gearbox.values, store()).arguments("dynamics_response")
+        wired_machine = import_module("facegear.config.machines").wired_machine
+        names = {"section": "transmission", "teeth": "teeth", "stiffness": "harmonics"}
+        names |= {name: name for name in ("friction", "law", "poses", "bodies") if name in inputs}
+        values = {argument: inputs[name] for argument, name in names.items()}
+        convert = import_module("facegear.config.arguments").typed_arguments
+        return wired_machine(**convert(wired_machine, values))
+    return outputs.machine_of(gearbox)
 
 
 def _neutral_part(system: Any, displacement: Any) -> Any:

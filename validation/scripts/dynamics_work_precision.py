@@ -18,11 +18,7 @@ from validation.dynamics.problems import (
     oscillator_problem,
     tangent_problems,
 )
-from validation.dynamics.work_precision import (
-    Budget,
-    gain,
-    work_precision,
-)
+from validation.dynamics.work_precision import Budget, gain, work_precision
 from validation.plots.work_precision import work_precision_diagram
 
 with stage(snakemake) as run:
