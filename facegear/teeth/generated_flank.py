@@ -42,6 +42,8 @@ FLATTEST = float(np.cos(0.05))
 FURTHER_STARTS = (-0.15, 0.2, -0.35)
 """Shifts (rad) of the start where a search ended beyond the singular line, as it does near the inner end of
 helical flanks, whose slopes differ from those of spur teeth that it starts from."""
+SURE = 1e-9
+"""Residual over the squared radius above which no place counts as found, however steep the residual is."""
 ACCURATE = 1e-12
 """Largest Newton step of psi (rad) with which a point counts as found."""
 EXACT = np.finfo(float).eps
@@ -385,7 +387,9 @@ class GearFlank:
             psi = np.clip(psi - step, *SLOPES)
             if np.all((np.abs(step) < CLOSE) | (np.abs(value) <= EXACT * radius**2)):
                 break
-        return psi, slope, np.abs(value) <= np.maximum(ROUNDING * radius**2, ACCURATE * np.abs(slope))
+        # where the normal is upright s has no bound, and a slope without bound would let any place pass
+        step_limit = np.minimum(ACCURATE * np.abs(slope), SURE * radius**2)
+        return psi, slope, np.abs(value) <= np.maximum(ROUNDING * radius**2, step_limit)
 
     @cached_property
     def _growth_sign(self) -> float:

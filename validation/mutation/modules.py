@@ -48,7 +48,9 @@ MODULES = {
             "facegear/teeth/face_gear.py",
             "facegear/teeth/pinion.py",
         ),
-        _tests("teeth", "face_gear", "limits", "pinion", "validate", "public_flanks", "spur_limit"),
+        _tests(
+            "teeth", "face_gear", "limits", "pinion", "validate", "public_flanks", "spur_limit", "deviations"
+        ),
     ),
     "rating": Module(("facegear/strength/rating.py",), _tests("strength", "rating")),
 }

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from public_teeth import MM, NAMES, public_design, public_numbers
 
+from facegear.errors import NotConverged
 from facegear.teeth.family_limits import family_limits, singular_quadratic, tip_land
 from facegear.teeth.generated_fillet import flank_end, gear_fillet
 from facegear.teeth.generated_flank import gear_flank
@@ -56,6 +57,16 @@ def test_flank_points_and_normals_are_the_public_ones(name):
         assert np.abs(flank.normal(psi, s) - value["normal"]).max() < ANGLE
         compared += 1
     assert compared == 5
+
+
+@pytest.mark.parametrize("radius_mm", [10.0, 100.0, 190.0])
+def test_a_place_that_no_flank_has_is_named_by_its_radius(radius_mm):
+    """Far inside, an upright normal of endless length was taken for a place of the flank."""
+    family = public_design("P1")
+    radii = np.array([228.5, radius_mm]) * MM
+    heights = np.full(2, family.gear_tip.height(228.5 * MM) - family.rack.normal_module)
+    with pytest.raises(NotConverged, match=f"{radius_mm:.3f} mm from the axis"):
+        gear_flank(family, 1).parameters_at(radii, heights)
 
 
 @CASES
