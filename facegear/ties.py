@@ -74,7 +74,7 @@ def first_largest_rows(table: pd.DataFrame, column: str, keys: list[str], sort: 
 
 
 def _smallest_tie(largest: Any) -> Any:
-    """Return the smallest number that counts as equal to `largest`: largest - TIE |largest|, for numbers
+    """Return the smallest number that counts as equal to `largest`: largest - TIE abs(largest), for numbers
     or arrays.
     """
     return largest - TIE * abs(largest)

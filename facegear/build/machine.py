@@ -161,7 +161,7 @@ def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
     """Scale all torques of a machine so that each input pinion has a given torque in each of its meshes.
 
     An input meshes with all face gears, among which its torque is taken to be shared evenly: the factor
-    is torque times number of face gears over |per_input_n_m|.
+    is torque times number of face gears over abs(per_input_n_m).
 
     Parameters
     ----------

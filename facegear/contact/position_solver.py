@@ -188,9 +188,9 @@ def kkt_residual(
 ) -> float:
     """Compute the largest relative violation of balance, no tension, no penetration and complementarity.
 
-    With d = gap + C f - r a it is the largest of |a . f - torque| / torque, -min f / max f, -min d / s,
-    and |d| / s at points with a force; s is the largest |r a| plus the largest |gap| at points with a
-    force.
+    With d = gap + C f - r a it is the largest of abs(a . f - torque) / torque, -min f / max f, -min d / s,
+    and abs(d) / s at points with a force; s is the largest abs(r a) plus the largest abs(gap) at points with
+    a force.
 
     Parameters
     ----------

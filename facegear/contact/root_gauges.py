@@ -72,7 +72,7 @@ def section_errors(
     """Estimate the relative root-stress error of a body's mesh, by plane sections of the mesh and of a
     finer one.
 
-    It is the largest |tension / reference - 1| of line loads at HEIGHTS, in the middle plane of the
+    It is the largest abs(tension / reference - 1) of line loads at HEIGHTS, in the middle plane of the
     pinion or in five planes of the gear: both meshes are built with two elements along the face for it.
 
     Parameters

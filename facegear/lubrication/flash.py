@@ -48,7 +48,7 @@ def flash(
     line_load : Numbers
         Load over length w, N/m.
     sliding : Numbers
-        Magnitude of the sliding velocity |v_s|, m/s; it is not made positive here.
+        Magnitude of the sliding velocity abs(v_s), m/s; it is not made positive here.
     speeds : tuple[Numbers, Numbers]
         Rolling velocities u1 and u2 of both flanks across the line, m/s; their sign does not count.
     half_width : Numbers
@@ -91,7 +91,7 @@ def flash_at_any_speed(
     line_load : Numbers
         Load over length w, N/m.
     sliding : Numbers
-        Magnitude of the sliding velocity |v_s|, m/s.
+        Magnitude of the sliding velocity abs(v_s), m/s.
     speeds : tuple[Numbers, Numbers]
         Rolling velocities u1 and u2 of both flanks across the line, m/s.
     half_width : Numbers

@@ -271,7 +271,7 @@ class Xu:
         return xu(at.pressure, at.radius, at.u1, at.u2, at.bulk_viscosity, at.rq)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Tell at which points the slide to roll ratio |u1 - u2| / ((u1 + u2)/2) is at most 1.
+        """Tell at which points the slide to roll ratio abs(u1 - u2) / ((u1 + u2)/2) is at most 1.
 
         Parameters
         ----------

@@ -94,7 +94,7 @@ class LossFactors:
 
 
 def loss_factors(hats: HatSlip) -> LossFactors:
-    """Compute the loss factor H_V = sum of f |v| / (T w) over the hats at each torque and position.
+    """Compute the loss factor H_V = sum of f abs(v) / (T w) over the hats at each torque and position.
 
     The loss of the mesh is then mu H_V T w at a constant friction coefficient mu, with the pinion's
     torque T and speed w.

@@ -150,7 +150,7 @@ def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
     """Return which candidates (pinions,) can mesh at one common position of the lower gear.
 
     left, reach (pinions,): misfit and play of each pinion, in pitches; it meshes where the gear stands
-    within left +- reach. Candidates are added by rising |left| as long as all intervals have a point in
+    within left +- reach. Candidates are added by rising abs(left) as long as all intervals have a point in
     common.
     """
     fits = np.zeros(left.size, bool)

@@ -53,7 +53,7 @@ class TurningModes:
 
     @property
     def damping_ratios(self) -> Array:
-        """Damping ratios (m,), -Re l / |l|: fraction of critical damping; negative for a mode that grows."""
+        """Damping ratios (m,), -Re l / abs(l): part of critical damping, negative for a mode that grows."""
         return np.asarray(-self.exponents.real / np.abs(self.exponents))
 
 
@@ -199,7 +199,7 @@ def _forward(linear: LinearModel, shapes: ComplexArray, members: list[int], sign
 
     shapes (n, m); members: coordinates of one gear with one number of nodal diameters; sign: sense in
     which the gear turns, 1 towards growing angles. With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)]
-    the wave towards growing angles has |a + i b| / 2, the other |a - i b| / 2. It is 0.5 for no nodal
+    the wave towards growing angles has abs(a + i b) / 2, the other abs(a - i b) / 2. It is 0.5 for no nodal
     diameters.
     """
     cosine = [number for number in members if linear.labels[number].endswith("c")]

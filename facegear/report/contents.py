@@ -95,7 +95,7 @@ KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions"}
 def caption_of(name: str, values: Mapping[str, Any]) -> str:
     """Return the caption of a figure: that of CAPTIONS, or of a study by its title, or the name in words.
 
-    Where the config reproduces the paper, `Figure n of the paper: ` stands before it (PAPER_NUMBERS, or the
+    Where the config reproduces the paper, "Figure n of the paper:" stands before it (PAPER_NUMBERS, or the
     numbers that a study gives).
 
     Parameters

@@ -283,7 +283,7 @@ def coarser_roots(
 def face_error(root: RootStress, coarser: RootStress) -> float:
     """Estimate the relative error of the largest tension by Richardson's rule.
 
-    It is SAFETY |coarse - fine| / (2^ORDER - 1) over the largest tension, the worst of all torques. The
+    It is SAFETY abs(coarse - fine) / (2^ORDER - 1) over the largest tension, the worst of all torques. The
     difference at the places where stress is near its largest counts, not that of the largest values:
     these lie at gauges, which stand elsewhere on another mesh, and may agree by chance.
 

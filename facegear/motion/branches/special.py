@@ -176,7 +176,7 @@ def is_damped(segment: Segment, low: float, high: float) -> bool:
 
 
 def _distance(point: BranchPoint) -> float:
-    """Return the distance from the unit circle, | |multiplier| - 1 |, of the multiplier nearest to it."""
+    """Return the distance from the unit circle, abs(abs(multiplier) - 1), of the multiplier nearest to it."""
     return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
 
 

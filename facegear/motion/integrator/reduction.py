@@ -158,7 +158,7 @@ class Coupling:
         """Return a bound of the angular frequency that the coupling brings by itself, from spectral
         norms.
 
-        It is |D| / W + |G| + sqrt(|N| / W + |P|).
+        It is abs(D) / W + abs(G) + sqrt(abs(N) / W + abs(P)).
 
         Parameters
         ----------

@@ -141,7 +141,7 @@ def change(integrator: Integrator, first: Array, second: Array) -> float:
     """Return the largest difference of two states, each coordinate and rate weighted as a mesh
     deflection.
 
-    It is the largest component of |first - second| times the integrator's weights, over the length scale.
+    It is the largest component of abs(first - second) times the integrator's weights, over the length scale.
 
     Parameters
     ----------

@@ -311,8 +311,8 @@ def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) ->
     """Tabulate the linear response to each periodic torque at each pinion speed (rpm); columns EXCITED.
 
     A row a speed, torque and mesh has the amplitude of the mesh force (N), torque_n_m being nan. A row
-    a speed, torque and torsional spring has the amplitude of the spring's torque with its damping, |k +
-    i omega c| |twist| (N m), force_n being nan; `part` is then the mass behind the spring.
+    a speed, torque and torsional spring has the amplitude of the spring's torque with its damping,
+    abs(k + i omega c) times abs(twist) (N m), force_n being nan; `part` is then the mass behind the spring.
     """
     layout, line = machine.layout, machine.drive_line
     springs = [] if line is None else line.springs()

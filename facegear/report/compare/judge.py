@@ -388,7 +388,7 @@ def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
 def _relative_change(
     old: pd.Series, new: pd.Series, quantity: pd.Series | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return |new - old| over a scale, and the scale, both (rows,).
+    """Return abs(new - old) over a scale, and the scale, both (rows,).
 
     The scale is the largest finite magnitude of both columns, among rows of one `quantity` if that is
     given. Equal values and two NaN have change 0, a NaN on one side an infinite one. Where the scale is
