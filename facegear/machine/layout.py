@@ -310,7 +310,7 @@ class Layout:
 
     @cached_property
     def dof_names(self) -> tuple[str, ...]:
-        """Names of the degrees of freedom by body and letter: x, y, z, theta of each body, then tilt_x, tilt_y
+        """Names of degrees of freedom by body and letter: x, y, z, theta of each body, then tilt_x, tilt_y
         of tilting gears.
         """
         names = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
