@@ -13,6 +13,8 @@ from facegear.motion.branches.points import BranchPoint
 from facegear.motion.branches.segment import Segment, zero
 from facegear.motion.branches.special import Kind, Special, evidence, hidden_change, is_damped, may_change
 
+AWAY_FROM_ENDS = 0.1
+"""Part of a stretch beside either end in which no solved point divides it: halves may not differ too much."""
 LEVEL = 1e-7
 """A component of the tangent below this is zero: a motion that keeps contact may double at one speed."""
 SHORTEST = 1e-10
@@ -137,7 +139,7 @@ def _cut(segment: Segment, low: float, high: float) -> float:
     """
     middle = 0.5 * (low + high)
     inside = [fraction for fraction in segment.points_by_fraction if low < fraction < high]
-    margin = 0.1 * (high - low)
+    margin = AWAY_FROM_ENDS * (high - low)
     inside = [fraction for fraction in inside if low + margin < fraction < high - margin]
     return min(inside, key=lambda fraction: abs(fraction - middle), default=middle)
 

@@ -21,6 +21,18 @@ from facegear.motion.branches.period_map import PeriodMap
 from facegear.motion.branches.segment import zero
 from facegear.motion.branches.special import Kind
 
+SHORTER = 0.4
+"""Factor on the length of a step that failed; a free choice."""
+LOCUS_TURN = 0.2
+"""Turn of the tangent (rad) at which a step keeps its length; shorter turns lengthen the next step."""
+SHORTEN_TO, LENGTHEN_TO = 0.5, 1.7
+"""Limits of the factor between one step and the next; free choices."""
+LEAST_TURN = 1e-6
+"""Turn (rad) below which a locus counts as straight, so that no step is divided by zero."""
+LOCUS_CORRECTION = 0.3
+"""Largest way from the guess to the point found, over the length of the step; beyond, another locus."""
+CORNER_WIDTH = 1e-9
+"""Part of a step to which a corner is located."""
 STRAIGHT = 0.9
 """Least cosine between the tangents at both ends of a step."""
 
@@ -147,7 +159,7 @@ def _track(
             next_point = _step(problem, current_point, step)
             new_corners = _corners(problem, current_point, next_point)
         except (NotConverged, np.linalg.LinAlgError):
-            step *= 0.4
+            step *= SHORTER
             if step < run.ds_min:
                 return points, corners, BranchEnd.STEP
             continue
@@ -161,7 +173,10 @@ def _track(
         points.append(next_point)
         progress(next_point)
         angle = np.arccos(np.clip(current_point.tangent @ next_point.tangent, -1.0, 1.0))
-        step = min(step * float(np.clip(0.2 / max(float(angle), 1e-6), 0.5, 1.7)), run.ds_max)
+        step = min(
+            step * float(np.clip(LOCUS_TURN / max(float(angle), LEAST_TURN), SHORTEN_TO, LENGTHEN_TO)),
+            run.ds_max,
+        )
     return points, corners, BranchEnd.POINTS
 
 
@@ -179,7 +194,7 @@ def _step(problem: LocusProblem, current_point: LocusPoint, step: float) -> Locu
         current_point.tangent,
     )
     straight = current_point.tangent @ next_point.tangent
-    if straight < STRAIGHT or np.linalg.norm(next_point.x - guess) > 0.3 * step:
+    if straight < STRAIGHT or np.linalg.norm(next_point.x - guess) > LOCUS_CORRECTION * step:
         raise NotConverged("branches", f"a {problem.kind} locus", "a step that turns too sharply")
     return next_point
 
@@ -223,7 +238,7 @@ def _corners(
         )
 
     def locate_corner(test: Callable[[LocusPoint], float]) -> LocusPoint:
-        return at(zero(lambda fraction: test(at(fraction)), 0.0, 1.0, 1e-9))
+        return at(zero(lambda fraction: test(at(fraction)), 0.0, 1.0, CORNER_WIDTH))
 
     return [
         (corner, locate_corner(test))

@@ -18,6 +18,11 @@ DIFFERENCE = 1e-5
 """Step of the differences that give the change of the test function along the family of orbits."""
 SHARP = 2e-5
 """Step of the central differences at a corner of the locus."""
+STALE = 0.2
+"""Part of the test before a step that may be left after it; where more is left, the gradient is renewed."""
+LOOSER, LOOSEST = 1e3, 1e-10
+"""Factor on the goal, and smallest bound, of the step that ends Newton's method: the gradient is a
+difference, and what it misses makes the last steps shrink by a factor instead of squaring."""
 NEWTON_STEPS = 8
 """Maximum number of Newton steps."""
 
@@ -240,7 +245,7 @@ def solve_on_locus(
     for count in range(NEWTON_STEPS):
         linear, surface, normal = _surface(problem, x)
         test = borders.test(problem.matrix(linear))
-        if gradient is None or (count > 0 and abs(test) > 0.2 * before):
+        if gradient is None or (count > 0 and abs(test) > STALE * before):
             gradient = _gradient(problem, x, surface, borders, test, sharp)
         before = abs(test)
         system = np.array([gradient @ surface, row @ surface])
@@ -249,7 +254,7 @@ def solve_on_locus(
         if not np.abs(step).max() < 1.0:
             break
         x = x + step
-        if np.abs(step).max() <= max(1e3 * goal, 1e-10):
+        if np.abs(step).max() <= max(LOOSER * goal, LOOSEST):
             return _point(problem, x, borders, forward, sharp)
     location = " and ".join(
         f"{n} = {np.exp(value):.6g}" for n, value in zip(problem.plane.names, guess[-2:], strict=True)

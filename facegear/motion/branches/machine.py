@@ -21,6 +21,8 @@ from facegear.motion.plan import BranchPlan, Settings
 from facegear.motion.steady_state.simulate import Model, simulate, static_start
 from facegear.number_format import count_noun
 
+SAME_POINT = 1e-4
+"""Difference of the logarithm of the speed below which two special points start one locus."""
 TRIES = 12
 """Number of speeds, spaced geometrically over the range, that are tried after the nominal one."""
 SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
@@ -268,7 +270,9 @@ def machine_loci(
         run = LocusRun((plan.from_rpm, plan.factors[0]), (plan.to_rpm, plan.factors[1]))
         points_on_loci: list[tuple[int, float]] = []
         for period_map, kind, x in nearest:
-            if any(period_map.period == period and abs(x[-1] - u) < 1e-4 for period, u in points_on_loci):
+            if any(
+                period_map.period == period and abs(x[-1] - u) < SAME_POINT for period, u in points_on_loci
+            ):
                 continue
             try:
                 locus = follow_locus(plane, 1.0, kind, x, period_map, run)

@@ -19,6 +19,8 @@ from facegear.motion.branches.period_map import PeriodMap
 from facegear.motion.branches.points import BranchPoint, at_parameter
 from facegear.motion.branches.special import Kind, Special
 
+SAME_SPEED = 1e-9
+"""Relative difference below which two ends of ranges are one: rounding of their logarithms."""
 ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 """Special points at which a motion may end or change its stability."""
 
@@ -166,13 +168,13 @@ def coexistence_ranges(branches: Sequence[Branch]) -> list[tuple[float, float, t
     )
     ranges: list[tuple[float, float, tuple[int, ...]]] = []
     for low, high in pairwise(edges):
-        if high - low < 1e-9 * high:
+        if high - low < SAME_SPEED * high:
             continue
         middle = float(np.log(0.5 * (low + high)))
         numbers = tuple(
             number for number, branch in enumerate(branches) for _ in range(_stable_passages(branch, middle))
         )
-        if ranges and ranges[-1][2] == numbers and abs(ranges[-1][1] - low) < 1e-9 * low:
+        if ranges and ranges[-1][2] == numbers and abs(ranges[-1][1] - low) < SAME_SPEED * low:
             ranges[-1] = (ranges[-1][0], high, numbers)
         else:
             ranges.append((low, high, numbers))

@@ -10,6 +10,14 @@ from facegear.errors import NotConverged
 from facegear.motion.branches.period_map import PeriodMap
 from facegear.motion.branches.points import BranchPoint, correct_state, solve_point
 
+ALONG = 1e-9
+"""Cosine's distance from 1 up to which a chord counts as the tangent, whose matrix is known already."""
+END_WIDTH, BEFORE_END = 1e-5, 0.95
+"""Width to which the end of a segment is found, and part of the way to it at which a point is taken."""
+NEAR_ONE = 0.6
+"""Modulus of a multiplier above which its change shortens a step; smaller ones are far from 1."""
+LEAST_ANGLE, LEAST_MISS = 1e-6, 1e-9
+"""Angle (rad) and relative miss of the guess below which a branch counts as straight; they are divided by."""
 MIN_COSINE = 0.3
 """Least cosine between a chord and a tangent of the same branch."""
 SMALL = 1e-5
@@ -155,7 +163,7 @@ class Segment:
         point = self.points_by_fraction[fraction]
         along = _slope(stretch * self.chord, point.tangent)
         size = float(np.linalg.norm(along))
-        is_tangent = along @ point.tangent > (1.0 - 1e-9) * size
+        is_tangent = along @ point.tangent > (1.0 - ALONG) * size
         direction = point.tangent if is_tangent else along / size
         return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
@@ -244,8 +252,8 @@ def reversal(
         point = segment.at(fraction)
         return float((half.gap(point.z, point.u) @ shift) / size**2)
 
-    fraction = zero(left, 0.0, 1.0, 1e-5)
-    return segment.at(0.95 * fraction), segment.at(fraction)
+    fraction = zero(left, 0.0, 1.0, END_WIDTH)
+    return segment.at(BEFORE_END * fraction), segment.at(fraction)
 
 
 STRAIGHT = 0.9
@@ -338,12 +346,12 @@ def _refusal(current_point: BranchPoint, next_point: BranchPoint, step: float) -
 def _drift(current_point: BranchPoint, next_point: BranchPoint) -> float:
     """Return the largest relative change of a multiplier's modulus between two points, in sorted order.
 
-    Only moduli above 0.6 count. The result is 0 where the numbers of multipliers differ.
+    Only moduli above NEAR_ONE count. The result is 0 where the numbers of multipliers differ.
     """
     first, second = np.abs(current_point.multipliers), np.abs(next_point.multipliers)
     if first.size != second.size:
         return 0.0
-    near = (first > 0.6) | (second > 0.6)
+    near = (first > NEAR_ONE) | (second > NEAR_ONE)
     scale = np.maximum(np.maximum(first, second), 1.0)
     return float((np.abs(first - second) / scale)[near].max(initial=0.0))
 
@@ -372,5 +380,5 @@ def next_length(
     """
     angle = float(np.arccos(np.clip(current_point.tangent @ next_point.tangent, -1.0, 1.0)))
     off = float(np.linalg.norm(next_point.x - _ahead(current_point, before, step))) / step
-    growth = min(TURN / max(angle, 1e-6), np.sqrt(AIM / max(off, 1e-9)))
+    growth = min(TURN / max(angle, LEAST_ANGLE), np.sqrt(AIM / max(off, LEAST_MISS)))
     return step * float(np.clip(growth, 0.5, FASTEST))

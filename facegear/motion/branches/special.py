@@ -116,6 +116,8 @@ def _nearest(values: ComplexArray, goal: float) -> complex:
     return complex(values[np.argmin(np.abs(values - goal))])
 
 
+LEAST_DISTANCE = 1e-3
+"""Distance of multipliers from the unit circle that counts as the least: it bounds the number of looks."""
 NEAR_CIRCLE = 0.4
 """Multipliers farther from the unit circle at both ends of a stretch are left out."""
 WIDEST_TURN, NARROWEST_TURN = 0.6, 0.1
@@ -210,7 +212,7 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     if turn > _widest_turn(max(distances)):
         return 0.5 * (low + high)
     # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
-    count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), MIN_LOOKS, MAX_LOOKS))
+    count = int(np.clip(np.ceil(turn / max(max(distances), LEAST_DISTANCE)), MIN_LOOKS, MAX_LOOKS))
     looks = np.arange(1, count + 1) / (count + 1.0)
     matrices = _interpolate([point.linear.matrix for point in ends], [start, end], looks)
     values = without_neutral(np.linalg.eigvals(matrices), neutral)

@@ -161,10 +161,10 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
         labels: Mapping[str, str] | None = None,
         **keywords: Any,
     ) -> "MplFigure":
-        # matplotlib: a second that only drawing needs
         """Draw what the method describes with matplotlib, at `size` (inches; None for the default),
         with texts replaced by `labels`.
         """
+        # matplotlib: a second that only drawing needs
         from facegear.report.figures.draw_matplotlib import draw, rename_texts
 
         if size is not None and not _is_size(size):
