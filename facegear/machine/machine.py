@@ -70,7 +70,7 @@ class FlankTables:
 
     - drive: force of the drive flank by mesh position and compression
     - back: the same table for the drive flank of the mirrored pair, in which the back flank drives; users
-      of the back flank call `back.mirror()`
+      of the back flank call back.mirror
     """
 
     drive: ForceTable

@@ -211,7 +211,7 @@ class LinearLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Arguments of `motion.linear_law`: fourier, kind, breaks (rad), and pieces as `_pieces` returns
+        """Arguments of motion.linear_law: fourier, kind, breaks (rad), and pieces as `_pieces` returns
         them.
         """
         return {

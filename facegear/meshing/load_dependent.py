@@ -280,7 +280,7 @@ class LoadDependentLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Arguments of `motion.load_dependent_law`: table (`_columns`), levels (kinds, L) in m, kind
+        """Arguments of motion.load_dependent_law: table (`_columns`), levels (kinds, L) in m, kind
         (M,).
         """
         kind = np.ascontiguousarray(self.kind, np.int64)

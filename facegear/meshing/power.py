@@ -152,7 +152,7 @@ class PowerLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Arguments of `motion.power_law`: factor (1, 2, 2), the series 1 + depth cos, sine part first;
+        """Arguments of motion.power_law: factor (1, 2, 2), the series 1 + depth cos, sine part first;
         size, exponent, level and number of contacts.
         """
         return {

@@ -192,7 +192,7 @@ def _group(
     again: list[float],
 ) -> GroupSharing:
     """Return the result of one group, with coefficient and lost contact thinned to about
-    `options.samples` a cycle.
+    options.samples a cycle.
 
     `start_means` are its mean coefficients in the motions from the other starts, which give the range.
     `again` are those of them in the same class of irregular motion, which may widen the half-width

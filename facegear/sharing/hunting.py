@@ -110,7 +110,7 @@ class LoadHistory:
         Returns
         -------
         (meshes of the group,) array
-            Dimensionless, in the order of `group.meshes`; nan without an even share.
+            Dimensionless, in the order of group.meshes; nan without an even share.
         """
         return self.mesh_load_factors[list(group.meshes)]
 

@@ -93,7 +93,7 @@ class MappedMachine:
         Returns
         -------
         (samples, paths) array
-            Magnitudes, N, in the order of `group.meshes`. Raises NotConverged.
+            Magnitudes, N, in the order of group.meshes. Raises NotConverged.
         """
         pinions, every = self.pinions(group), np.zeros((len(late), len(self.machine.layout.pinions)))
         every[:, pinions] = late * self.working_flank(group)
@@ -127,7 +127,7 @@ class MappedMachine:
         Returns
         -------
         (meshes,) array of int
-            In the order of `group.meshes`, dimensionless.
+            In the order of group.meshes, dimensionless.
         """
         return np.array([self.machine.layout.meshes[mesh][0] for mesh in group.meshes])
 

@@ -130,7 +130,7 @@ def in_turn(part: Part, group: Integers, count: int) -> Iterator[tuple[Array, In
     Yields
     ------
     tuple of arrays
-        Small matrices (k, a, a), N/m, of one group, and their rows (k, a) of `part.transformation`.
+        Small matrices (k, a, a), N/m, of one group, and their rows (k, a) of part.transformation.
     """
     number = group[part.cell]
     order = np.argsort(number, kind="stable")

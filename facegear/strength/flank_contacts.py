@@ -231,7 +231,7 @@ def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
     Returns
     -------
     RootStress
-        Root stress of the rated gear (`duty.gear`) in that contact.
+        Root stress of the rated gear (duty.gear) in that contact.
     """
     roots = [contact.roots[duty.gear] for contact in contacts]
     return max(roots, key=lambda root: root.at_torque(duty.largest).max())

@@ -306,7 +306,7 @@ def first_row(outline: Outline, sizes: MeshSizes) -> float:
     Returns
     -------
     float
-        m; inf if `sizes.fillet_depth` is None.
+        m; inf if sizes.fillet_depth is None.
     """
     depth_limit = sizes.fillet_depth
     if depth_limit is None:

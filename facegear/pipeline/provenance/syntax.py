@@ -129,7 +129,7 @@ class Part:
 
     - code: kinds of its syntax nodes, with names and values, in their order; equal lists mean equal
       code
-    - uses: dotted names that it reads (`a.b.c`), and marks WHOLE_MODULE, NAMED_MODULE and POSSIBLE_NAME
+    - uses: dotted names that it reads (a.b.c), and marks WHOLE_MODULE, NAMED_MODULE and POSSIBLE_NAME
     - bound: names that it binds, in any scope
     - imports: imports from the packages in it
     """
@@ -229,7 +229,7 @@ class Walk:
             self.part.bound.add(node.id)
 
     def _visit_attribute(self, node: ast.Attribute) -> None:
-        """Record a dotted name such as `a.b.c` as one use; behind an expression that is no name, visit
+        """Record a dotted name such as a.b.c as one use; behind an expression that is no name, visit
         that expression.
         """
         chain: list[str] = []

@@ -142,7 +142,7 @@ class PartialResults:
         """Write the parts of a stage (content by file name), and last their manifest, which shows that
         they are complete.
 
-        `start` is the value of `time.perf_counter` (s) at which the computation began.
+        `start` is the value of time.perf_counter (s) at which the computation began.
         """
         for file, content in parts.items():
             write_part(str(subfolder / file), content)

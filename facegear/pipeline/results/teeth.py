@@ -25,7 +25,7 @@ class GeometryResult(Result):
         """All numbers and texts of the geometry's record: columns quantity and value; the unit ends a
         quantity's name.
 
-        A quantity inside a section of the record is `section.name`.
+        A quantity inside a section of the record is section.name.
 
         Returns
         -------

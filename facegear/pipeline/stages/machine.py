@@ -81,8 +81,8 @@ def modal(
     """Compute natural frequencies and mode shapes of the machine, linear, with constant mesh stiffness.
 
     The stiffness is that of stage stiffness, its mean by `definition` at the operating load, if
-    `inputs.harmonics` is its table; otherwise it is `mean_stiffness`. With a load-dependent mesh law
-    (`inputs.law`) every mesh has its local stiffness under its own mean load instead. The transmission
+    inputs.harmonics is its table; otherwise it is `mean_stiffness`. With a load-dependent mesh law
+    (inputs.law) every mesh has its local stiffness under its own mean load instead. The transmission
     error plays no part.
 
     Parameters

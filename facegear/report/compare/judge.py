@@ -195,7 +195,7 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
 def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.DataFrame:
     """Return a table without its key columns, with a text index that names its rows.
 
-    A name joins the values of `table.keys`; repeated names end in #2, #3. Rows without keys are named
+    A name joins the values of table.keys; repeated names end in #2, #3. Rows without keys are named
     by number.
 
     speeds: further part (rows,) of the names in tables with a bracket, see `_bracket_names`; None in
@@ -258,7 +258,7 @@ def _bracket_places(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, 
 
 
 def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
-    """Return the values of the keys of each row but for its mesh or body (`table.item`), joined to a
+    """Return the values of the keys of each row but for its mesh or body (table.item), joined to a
     text, shape (rows,). Rows with equal text form a group that mirror images may permute; without an
     item each row is alone.
     """
@@ -405,7 +405,7 @@ def _relative_change(
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
-    """Return for which rows (rows,) a column of `table.motion` names a class that does not begin with
+    """Return for which rows (rows,) a column of table.motion names a class that does not begin with
     REGULAR. Empty classes count as regular.
     """
     motions = [frame[column] for column in table.motion if column in frame.columns]

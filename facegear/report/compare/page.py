@@ -341,7 +341,7 @@ def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Ite
 
 
 def _worst_series(name: str, curve: Curve, old: Path, new: Path) -> tuple[pd.DataFrame, pd.DataFrame, str]:
-    """Return the old and the new rows of the series whose `curve.y` changed most in absolute terms at
+    """Return the old and the new rows of the series whose curve.y changed most in absolute terms at
     one x, and the values that name the series, joined by commas.
 
     name: path of the table inside both folders. Tables without series are returned whole, with an empty

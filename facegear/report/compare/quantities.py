@@ -86,7 +86,7 @@ class Table:
         column : str
             Name of the column.
         elsewhere : bool
-            Whether the row's bracket lies elsewhere in the other table; `bracket.errors` then go first.
+            Whether the row's bracket lies elsewhere in the other table; bracket.errors then go first.
 
         Returns
         -------

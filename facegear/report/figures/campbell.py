@@ -102,7 +102,7 @@ def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: in
     ----------
     spectra : mapping of (...) arrays
         Arrays `waterfall` of stage dynamics_sweep: `orders` (n,), multiples of the mesh frequency from
-        0 on; for each direction `up_speed_rpm` (speeds,) and `up_amplitude_m` (speeds, meshes, n), or
+        0 on; for each direction up_speed_rpm (speeds,) and up_amplitude_m (speeds, meshes, n), or
         `down_...`.
     mesh : int
         Index of the mesh in the arrays.
