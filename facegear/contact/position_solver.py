@@ -36,7 +36,7 @@ START_GAP, START_WIDTH = 0.6, 0.14
 
 
 class SearchStrip(NamedTuple):
-    """How wide a strip contact is sought in.
+    """Width of the strip of functions in which contact is sought.
 
     The rotation t = gap / lever arm closes a function; c is the least t of its pair in its column of the
     lattice. The function is in the strip if t - c < width (gap * limit - c), with `gap` and `width` of

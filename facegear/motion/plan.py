@@ -43,7 +43,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Settings:
-    """How a steady state is sought.
+    """Settings by which a steady state is sought.
 
     Lengths of time are in mesh periods.
 

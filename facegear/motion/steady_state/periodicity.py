@@ -1,4 +1,4 @@
-"""How nearly a run comes back to a state: its own past, or an orbit that is known."""
+"""Distance of a run from a state to which it may come back: its own past, or a known orbit."""
 
 from dataclasses import dataclass
 

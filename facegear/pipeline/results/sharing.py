@@ -271,7 +271,7 @@ def _require_groups(result: Result) -> None:
 
 
 class SharingMapResult(Result):
-    """How load sharing follows from stiffness, errors and torque, and what to change."""
+    """Map of load sharing over stiffness, errors and torque, with advice on what to change."""
 
     STAGE: ClassVar = "sharing_map"
 
