@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 
 TIE = 1e-4
 """Relative difference from the largest value up to which a value counts as equally large."""
@@ -71,6 +71,28 @@ def first_largest_rows(table: pd.DataFrame, column: str, keys: list[str], sort: 
     largest = table.groupby(keys, sort=sort)[column].transform("max")
     levelled = table[column].mask(table[column] >= _smallest_tie(largest), largest)
     return table.loc[levelled.groupby([table[key] for key in keys], sort=sort).idxmax()]
+
+
+def size_ranks(values: Array) -> Integers:
+    """Rank numbers by size, 0 for the largest; numbers within TIE of the largest of a rank share it.
+
+    Parameters
+    ----------
+    values : (n,)
+        Finite numbers of one unit; their signs do not count.
+
+    Returns
+    -------
+    (n,) array of int
+        Rank of each. A stable sort by it keeps the order of twins, whatever rounding makes of them.
+    """
+    sizes, ranks = np.abs(values), np.zeros(len(values), dtype=np.int64)
+    largest, rank = np.inf, -1
+    for row in np.argsort(-sizes, kind="stable"):
+        if rank < 0 or sizes[row] < _smallest_tie(largest):
+            largest, rank = sizes[row], rank + 1
+        ranks[row] = rank
+    return ranks
 
 
 def _smallest_tie(largest: Any) -> Any:

@@ -16,6 +16,7 @@ from facegear.machine.layout import Kinematics, Layout, Role
 from facegear.machine.machine import Machine, balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
+from facegear.ties import size_ranks
 
 STEP = 1e-10
 """Step of the differences, m: far above rounding, and so small that no other mesh cycle becomes the
@@ -62,7 +63,8 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        One row an error and group, largest first: columns error, group, per_um.
+        One row an error and group, largest first, twins in the order of their errors: columns
+        error, group, per_um.
 
     Raises
     ------
@@ -79,8 +81,9 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
         for group in base.groups:
             before, after = (largest(run.path_factors(group)) for run in ends)
             rows.append((name, group.name, 1e-6 * (after - before) / width))
-    frame = pd.DataFrame(rows, columns=["error", "group", "per_um"])
-    return frame.dropna().sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
+    frame = pd.DataFrame(rows, columns=["error", "group", "per_um"]).dropna()
+    order = np.argsort(size_ranks(frame["per_um"].to_numpy(float)), kind="stable")
+    return frame.iloc[order].reset_index(drop=True)
 
 
 def _coarser(base: HuntingCycle) -> HuntingCycle:

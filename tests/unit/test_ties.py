@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.ties import first_largest, first_largest_row, first_largest_rows
+from facegear.ties import first_largest, first_largest_row, first_largest_rows, size_ranks
 
 ROUNDING = (1e-12, -1e-12, 0.0)
 
@@ -32,3 +32,10 @@ def test_rows_of_groups_keep_the_order_and_name_the_first_twin(rounding):
     assert first_largest_rows(table, "force", ["speed"])["mesh"].to_list() == ["left", "tail"]
     assert first_largest_rows(table, "force", ["speed"], sort=True)["mesh"].to_list() == ["tail", "left"]
     assert first_largest_row(table, "force")["mesh"] == "tail"
+
+
+@pytest.mark.parametrize("rounding", ROUNDING)
+def test_twins_share_a_rank_of_size_whatever_their_signs(rounding):
+    values = np.array([1.0, -5.0, 0.0, 5.0 * (1.0 + rounding), 2.0, -1.0 - rounding])
+    assert size_ranks(values).tolist() == [2, 0, 3, 0, 1, 2]
+    assert size_ranks(np.array([])).tolist() == []
