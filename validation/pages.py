@@ -37,8 +37,12 @@ STORED_TABLE = re.compile(r"(?ms)^<!-- stored: (\S+) -->\n(.*?)^<!-- end -->$")
 CODE_BLOCK = re.compile(r"(?ms)^ *```.*?^ *```$")
 WHOLE = ("reference/config.md",)
 """Pages that are generated as a whole, each by its own command."""
-MOST_WORDS = 45_000
-"""Largest number of words that a person has written in all pages: what a reader can be asked to maintain."""
+MOST_WORDS = 48_500
+"""Largest number of words that a person has written in all pages: what a reader can be asked to maintain.
+
+It was 45,000 while spur teeth and springs as bearings were all; other teeth, rolling bearings and casings
+came since.
+"""
 
 
 def pages() -> list[Path]:

@@ -210,7 +210,7 @@ def _nominal(section: ToothPair) -> PairDesign:
         assembly=AssemblyErrors(
             offset=1e-6 * section.assembly.offset_um,
             shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
-            axial_shift=1e-6 * section.assembly.axial_shift_um,
+            gear_axial=1e-6 * section.assembly.gear_axial_um,
         ),
     )
 

@@ -35,7 +35,7 @@ COLUMNS = (
 """Columns of table `by_torque`; units stand in the names."""
 
 BY_FLANK_COLUMNS = (
-    *("gear", "flank", "offset_um", "shaft_angle_error_deg", "axial_shift_um"),
+    *("gear", "flank", "offset_um", "shaft_angle_error_deg", "gear_axial_um"),
     *COLUMNS,
     "path_radius_mm",
 )
@@ -87,7 +87,7 @@ def by_flank(
             "flank": FLANKS[column],
             "offset_um": 1e6 * assembly.offset,
             "shaft_angle_error_deg": np.degrees(assembly.shaft_angle_error),
-            "axial_shift_um": 1e6 * assembly.axial_shift,
+            "gear_axial_um": 1e6 * assembly.gear_axial,
         }
         parts.append(variants[int(number)].assign(**flank_columns))
     return pd.concat(parts, ignore_index=True)[list(BY_FLANK_COLUMNS)]

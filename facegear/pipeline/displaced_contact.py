@@ -149,7 +149,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
             {
                 "flank": name,
                 "offset_um": 1e6 * flank.design.assembly.offset,
-                "axial_shift_um": 1e6 * flank.design.assembly.axial_shift,
+                "gear_axial_um": 1e6 * flank.design.assembly.gear_axial,
                 "shaft_angle_error_deg": degrees(flank.design.assembly.shaft_angle_error),
                 "outward_um": 1e6 * flank.outward,
                 "approach_um": 1e6 * flank.approach,
@@ -246,7 +246,7 @@ class DisplacedContact:
     def table(self) -> pd.DataFrame:
         """One row a flank, drive and back: what it meets without load.
 
-        - offset_um, axial_shift_um, shaft_angle_error_deg: errors of assembly that the displacements
+        - offset_um, gear_axial_um, shaft_angle_error_deg: errors of assembly that the displacements
           amount to, those of the config included, as the flank meets them; outward_um: shift of the
           pinion along its axis, which moves the ends of its face alone.
         - approach_um: how far the flanks have come together along the line of action from as assembled,

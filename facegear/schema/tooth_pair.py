@@ -114,4 +114,4 @@ class AssemblySection(Section):
     shaft_angle_error_deg: float = Field(
         default=0.0, ge=-2, le=2, description="dgamma: error of the angle between the axes"
     )
-    axial_shift_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")
+    gear_axial_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")

@@ -274,10 +274,10 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
     """
     psi, tilt = acos(pair.gear_base_radius / path), errors.shaft_angle_error
     lift, step = pair.shaper_lift, 1e-7
-    offset = ((lift - errors.axial_shift) * cos(psi) - lift * cos(pair.pressure_angle)) / sin(psi)
+    offset = ((lift - errors.gear_axial) * cos(psi) - lift * cos(pair.pressure_angle)) / sin(psi)
     for _ in range(STEPS):
         near = [
-            contact_at(pair, AssemblyErrors(at, tilt, errors.axial_shift)) for at in (offset, offset + step)
+            contact_at(pair, AssemblyErrors(at, tilt, errors.gear_axial)) for at in (offset, offset + step)
         ]
         if near[0] is None or near[1] is None:
             return None

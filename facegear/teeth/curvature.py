@@ -35,7 +35,7 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
         smaller one's direction, from the pinion's axis, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    base, flank = design.shaper_base_radius, gear_flank(design.family, -1)
+    base, flank = design.shaper_base_radius, gear_flank(design.mirror_family, -1)
     turn = flank.turn(psi, base * roll, design.mean_radius)
     profile = turn_about_axis(turn, stack_vectors(np.sin(psi), 0.0, -np.cos(psi)))
     axial = turn_about_axis(turn, np.broadcast_to([0.0, 1.0, 0.0], profile.shape))
@@ -118,7 +118,7 @@ def _principal(
     tooth. extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's
     nominal flank does not have, the pinion's among them. Results: as of `relative_curvatures`.
     """
-    flank, length = gear_flank(design.family, -1), design.shaper_base_radius * roll
+    flank, length = gear_flank(design.mirror_family, -1), design.shaper_base_radius * roll
     tangents = np.stack(flank.tangents(psi, length), axis=-1)
     changes = np.stack(flank.normal_tangents(psi, length), axis=-1)
     basis = np.stack([profile, axial], axis=-2)

@@ -2,9 +2,11 @@
 
 Frames
 ------
-Mesh frame (fixed): origin where the nominal axes cross, z the gear's axis (gear teeth point to +z, the pinion
-lies above the gear), y the pinion's axis (radially outward), x tangential. The pinion axis is at z = 0, the
-gear's datum (pitch) plane at z = -(pitch radius + profile shift) of the pinion.
+Mesh frame (fixed): origin at the foot of the common perpendicular of both axes on the gear's axis, z along
+that axis (gear teeth point to +z, the pinion lies above the gear), x tangential. The pinion's axis passes
+through (offset, 0, 0) along a = (0, sin shaft angle, -cos shaft angle): along y if the axes cross at 90
+degrees, when the gear's datum (pitch) plane is at z = -(pitch radius + profile shift) of the pinion. Places y
+of the pinion count along a.
 
 Gear body frame: the mesh frame at gear angle 0; reference tooth 0 is centred on the half plane x = 0, y > 0.
 Pinion body frame: reference tooth 0 is centred on the half plane x = 0, z < 0; y along the axis as above.
@@ -14,7 +16,11 @@ Tooth j of the pinion stands at phi1 + (j - 1/2) 2 pi / N1, tooth j of the gear 
 phi1 = phi2 = 0 gear tooth 0 fills the space between pinion teeth 0 and 1. The conjugate motion is
 phi2 = phi1 N1 / N2. "Right" is the +x side of a tooth in the mesh zone, "left" the -x side.
 The drive side is pinion right against gear left, pair j being tooth j of both; it carries load when the
-pinion drives towards +x. The back side (pinion tooth j left, gear tooth j - 1 right) is its mirror image.
+pinion drives towards +x. Functions of a design describe its drive side: of the pinion the right flank, of the
+gear the left flank, which `face_gear` and all that builds on it show in a mirror x -> -x. The back side
+(pinion tooth j left, gear tooth j - 1 right) is the drive side of `placement.mirror_design`, seen in that
+mirror: the same teeth where `PairDesign.is_symmetric`, others where teeth are helical, offset or have two
+pressure angles.
 """
 
 from dataclasses import dataclass, field, replace
@@ -104,7 +110,7 @@ class Flanks:
 
 @dataclass(frozen=True)
 class PinionGeometry:
-    """Spur pinion cut by a rack (lengths in m)."""
+    """Pinion cut by a rack (lengths in m; radial ones in transverse sections)."""
 
     teeth: int
     width: float
@@ -120,6 +126,8 @@ class PinionGeometry:
     root_relief: Relief = field(default_factory=Relief)
     lead_crowning: Relief = field(default_factory=Relief)
     flanks: Flanks = field(default_factory=Flanks)
+    middle: float | None = None
+    """Place y of the middle of the face, from the common perpendicular of the axes; None: the gear's mean radius."""
 
 
 @dataclass(frozen=True)
@@ -172,18 +180,26 @@ class AssemblyErrors:
     """Errors of assembly: where the pinion stands against its nominal place in the gear's frame.
 
     offset dE moves the pinion along +x (m); shaft_angle_error dgamma tilts it about x through the point of
-    its axis at the middle of the face, outer end away from the gear if positive (rad); axial_shift dq moves
-    the gear away from the pinion along its axis (m).
+    its axis at the middle of the face, outer end away from the gear if positive (rad); gear_axial dq moves
+    the gear away from the pinion along the gear's axis (m); pinion_axial w moves the pinion outwards along
+    its own axis (m).
     """
 
     offset: float = 0.0
     shaft_angle_error: float = 0.0
-    axial_shift: float = 0.0
+    gear_axial: float = 0.0
+    pinion_axial: float = 0.0
 
 
 @dataclass(frozen=True)
 class PairDesign:
-    """A spur pinion and the face gear generated for it."""
+    """A pinion and the face gear generated for it; lengths in m, angles in rad.
+
+    module: normal module. pressure_angle: normal pressure angle of the drive flank. coast_pressure_angle:
+    that of the coast flank, None where both are equal. helix_angle: positive for a right-hand pinion.
+    taper_angle: positive where the pinion grows outwards. shaft_angle, offset: of the pinion's axis against
+    the gear's, see `tooth_family`.
+    """
 
     module: float
     pressure_angle: float
@@ -191,6 +207,28 @@ class PairDesign:
     face_gear: FaceGearGeometry
     shaper: Shaper
     assembly: AssemblyErrors = field(default_factory=AssemblyErrors)
+    helix_angle: float = 0.0
+    taper_angle: float = 0.0
+    shaft_angle: float = pi / 2
+    offset: float = 0.0
+    coast_pressure_angle: float | None = None
+
+    @property
+    def pressure_angles(self) -> tuple[float, float]:
+        """Normal pressure angles of the drive and the coast flank, rad."""
+        coast = self.coast_pressure_angle
+        return self.pressure_angle, self.pressure_angle if coast is None else coast
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether coast flanks are mirror images of drive flanks: no helix, no offset, one pressure angle."""
+        drive, coast = self.pressure_angles
+        return self.helix_angle == 0.0 and self.offset == 0.0 and drive == coast
+
+    @property
+    def is_spur(self) -> bool:
+        """Whether the teeth are symmetric and straight, and the axes cross at 90 degrees."""
+        return self.is_symmetric and self.taper_angle == 0.0 and self.shaft_angle == pi / 2
 
     @property
     def with_swapped_flanks(self) -> "PairDesign":
@@ -213,11 +251,11 @@ class PairDesign:
         """The pair's nominal teeth as members of the family of all kinds, without errors of assembly."""
         pinion, gear, shaper = self.pinion, self.face_gear, self.shaper
         return ToothFamily(
-            rack=Rack(self.module, (self.pressure_angle, self.pressure_angle)),
+            rack=Rack(self.module, self.pressure_angles, self.helix_angle, self.taper_angle),
             pinion_teeth=pinion.teeth,
             gear_teeth=gear.teeth,
             shaper_teeth=shaper.teeth,
-            middle=self.mean_radius,
+            middle=self.middle,
             width=pinion.width,
             inner_radius=gear.inner_radius,
             outer_radius=gear.outer_radius,
@@ -225,6 +263,8 @@ class PairDesign:
             pinion_dedendum=pinion.dedendum,
             gear_addendum=gear.addendum,
             shaper_addendum=shaper.addendum,
+            shaft_angle=self.shaft_angle,
+            offset=self.offset,
             profile_shift=pinion.profile_shift,
             thinning=pinion.thinning,
             rack_tip_radius=pinion.rack_tip_radius,
@@ -233,14 +273,36 @@ class PairDesign:
         )
 
     @cached_property
+    def mirror_family(self) -> ToothFamily:
+        """The pair's nominal teeth in a mirror x -> -x, where the gear's drive flank stands on the right."""
+        return self.family.mirror_image
+
+    @cached_property
+    def transverse_module(self) -> float:
+        """Module in the pinion's transverse section, m."""
+        return self.family.rack.transverse_module
+
+    @cached_property
     def pinion_pitch_radius(self) -> float:
         """Pitch radius of the pinion, m."""
-        return self.module * self.pinion.teeth / 2
+        return self.family.pinion_pitch_radius
 
     @cached_property
     def pinion_base_radius(self) -> float:
-        """Base radius of the pinion, m."""
-        return self.pinion_pitch_radius * cos(self.pressure_angle)
+        """Radius of the base cylinder of the pinion's drive flank, m."""
+        return self.family.pinion_flanks[0].base_radius
+
+    @cached_property
+    def normal_arm(self) -> float:
+        """Torque on the pinion over the force along the drive flank's normal, m: base radius times the cosine
+        of the base helix.
+        """
+        return self.pinion_base_radius * self.family.pinion_flanks[0].cosine
+
+    @cached_property
+    def gear_normal_arm(self) -> float:
+        """Torque on the gear over the force along the drive flank's normal, m."""
+        return self.normal_arm * self.face_gear.teeth / self.pinion.teeth
 
     @cached_property
     def pinion_tip_radius(self) -> float:
@@ -345,8 +407,13 @@ class PairDesign:
 
     @cached_property
     def mean_radius(self) -> float:
-        """Middle of the face (m): where the pinion's face is centred."""
+        """Middle of the gear's face, m."""
         return (self.face_gear.inner_radius + self.face_gear.outer_radius) / 2
+
+    @cached_property
+    def middle(self) -> float:
+        """Place y of the middle of the pinion's face, m."""
+        return self.mean_radius if self.pinion.middle is None else self.pinion.middle
 
 
 @dataclass(frozen=True)

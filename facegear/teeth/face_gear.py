@@ -1,9 +1,9 @@
-"""The spur face gear's flank: the right flank of the family, in the terms of the shaper's roll angle.
+"""The face gear's flank that the pinion drives, in the terms of the shaper's roll angle.
 
-Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
-image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
-normal. The closed forms are those of `generated_flank`; source of the spur limit: Litvin and Fuentes 2004,
-chapter 18.
+Everything is for the left flank of tooth 0 in the gear body frame (see `design`), seen in a mirror x -> -x,
+where it stands on the right. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the
+slope of the common normal. The closed forms are those of `generated_flank`; source of the spur limit: Litvin
+and Fuentes 2004, chapter 18.
 """
 
 from dataclasses import dataclass
@@ -102,8 +102,8 @@ def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple
 
 
 def _flank(design: PairDesign) -> GearFlank:
-    """Return the gear's right (coast) flank as a surface of `generated_flank`."""
-    return gear_flank(design.family, -1)
+    """Return the gear's left (drive) flank in the mirror x -> -x as a surface of `generated_flank`."""
+    return gear_flank(design.mirror_family, -1)
 
 
 def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:

@@ -33,7 +33,7 @@ def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tup
     tuple of (...) arrays
         Gear angle from the tooth's middle, rad, and z, m.
     """
-    points = gear_fillet(design.family, -1).at_slope(radius, psi)
+    points = gear_fillet(design.mirror_family, -1).at_slope(radius, psi)
     position = turn_about_axis(points.turn, points.position)
     return np.arctan2(position[..., 0], position[..., 1]), position[..., 2]
 
@@ -132,7 +132,7 @@ def fillet_normal(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Arra
     (..., 3) array
         Unit vectors, dimensionless.
     """
-    points = gear_fillet(design.family, -1).at_slope(radius, psi)
+    points = gear_fillet(design.mirror_family, -1).at_slope(radius, psi)
     return -turn_about_axis(points.turn, points.normal)
 
 

@@ -58,7 +58,7 @@ class PinionPose:
         return posed_motion, (
             nominal.offset + errors.offset,
             middle * nominal.sine + w * posed_motion.sine,
-            errors.axial_shift - middle * nominal.cosine - w * posed_motion.cosine,
+            errors.gear_axial - middle * nominal.cosine - w * posed_motion.cosine,
         )
 
 

@@ -201,7 +201,7 @@ def undercut_radius(design: PairDesign) -> float:
     float
         m.
     """
-    flank, roll = gear_flank(design.family, -1), design.shaper_tip_roll
+    flank, roll = gear_flank(design.mirror_family, -1), design.shaper_tip_roll
     end = design.shaper_base_radius * roll
 
     def singularity(psi: float) -> float:
@@ -228,7 +228,7 @@ def tip_plane_radius(design: PairDesign) -> float:
     float
         m.
     """
-    flank, height = gear_flank(design.family, -1), design.gear_tip_plane
+    flank, height = gear_flank(design.mirror_family, -1), design.gear_tip_plane
     psi = brentq(lambda at: flank.growth_at_height(at, height)[2], 1e-4, 1.0, xtol=ROUNDING)
     return flank.growth_at_height(psi, height)[1]
 
@@ -246,7 +246,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         """
         return psi - height * sin(psi) - space
 
-    flank = gear_flank(design.family, -1)
+    flank = gear_flank(design.mirror_family, -1)
 
     def exact(psi: float) -> float:
         """Return x / y of the flank on the tip plane at a slope psi (rad), 0 where the tooth is pointed."""

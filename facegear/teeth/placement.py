@@ -208,11 +208,13 @@ def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: 
         Motions (...).
     """
     phi1, phi2, tooth = np.broadcast_arrays(*(np.asarray(part, float) for part in (phi1, phi2, tooth)))
-    errors = design.assembly
+    errors, motion = design.assembly, design.family.motion
     tilt = rotation(np.array([1.0, 0.0, 0.0]), errors.shaft_angle_error)
-    pivot = np.array([0.0, design.mean_radius, 0.0])
-    shift = pivot - tilt @ pivot + np.array([errors.offset, 0.0, errors.axial_shift])
-    pinion_rotation = tilt @ body_rotation("pinion", phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth)
+    pivot = design.middle * motion.basis[1]
+    shift = pivot - tilt @ pivot + errors.pinion_axial * (tilt @ motion.basis[1])
+    shift += np.array([design.offset + errors.offset, 0.0, errors.gear_axial])
+    spun = body_rotation("pinion", phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth)
+    pinion_rotation = tilt @ motion.basis.T @ spun
     back = body_rotation("face_gear", -(phi2 + tooth * 2 * pi / design.face_gear.teeth))
     return RigidMotion(pinion_rotation, np.broadcast_to(shift, (*phi1.shape, 3))).then(back)
 
@@ -255,8 +257,37 @@ def mirror_design(design: PairDesign) -> PairDesign:
     PairDesign
         Mirrored pair.
     """
+    errors = replace(design.assembly, offset=-design.assembly.offset)
+    return replace(mirror_teeth(design), assembly=errors)
+
+
+def mirror_teeth(design: PairDesign) -> PairDesign:
+    """Return the teeth seen in a mirror x -> -x, with the errors of assembly unchanged.
+
+    Hand and offset change sign, and the flanks with their pressure angles change places; shaft angle, taper
+    and profile shift stay.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    PairDesign
+        Pair whose drive flanks are this pair's coast flanks in the mirror.
+    """
+    swapped = design.with_swapped_flanks
+    if design.is_symmetric:
+        return swapped
+    drive, coast = design.pressure_angles
+    coast_angle = None if drive == coast else drive
     return replace(
-        design.with_swapped_flanks, assembly=replace(design.assembly, offset=-design.assembly.offset)
+        swapped,
+        pressure_angle=coast,
+        coast_pressure_angle=coast_angle,
+        helix_angle=-design.helix_angle,
+        offset=-design.offset,
     )
 
 
@@ -334,9 +365,13 @@ def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
     Returns
     -------
     PairDesign
-        The pair with errors by `errors_at`, and with swapped deviations for a back flank.
+        The pair with errors by `errors_at`, mirrored for a back flank. The lower gear has the opposite offset
+        and the supplementary shaft angle.
     """
-    drive_design = design if flank == "drive" else design.with_swapped_flanks
+    faced = design
+    if gear == "lower" and not (design.offset == 0.0 and design.shaft_angle == pi / 2):
+        faced = replace(design, shaft_angle=pi - design.shaft_angle, offset=-design.offset)
+    drive_design = faced if flank == "drive" else mirror_teeth(faced)
     return replace(drive_design, assembly=errors_at(design.assembly, gear, flank))
 
 

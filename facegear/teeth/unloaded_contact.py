@@ -168,7 +168,7 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
     conjugate = conjugate_angle(design, phi1)
     errors, angle = design.assembly, design.pressure_angle
     initial_error = (
-        errors.offset * np.cos(angle) - errors.axial_shift * np.sin(angle) - design.pinion.thinning / 2
+        errors.offset * np.cos(angle) - errors.gear_axial * np.sin(angle) - design.pinion.thinning / 2
     )
     phi2 = conjugate + initial_error / design.gear_base_radius
     nearest = closest(design, phi1, phi2, margin=np.inf if every_pair else FOLLOWED_MARGIN)

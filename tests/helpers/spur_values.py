@@ -23,8 +23,8 @@ ROOT = Path(__file__).parents[2]
 STORED = ROOT / "tests" / "unit" / "teeth" / "spur.npz"
 ERRORS = (
     AssemblyErrors(),
-    AssemblyErrors(offset=120e-6, axial_shift=-40e-6),
-    AssemblyErrors(offset=-80e-6, shaft_angle_error=5e-4, axial_shift=30e-6),
+    AssemblyErrors(offset=120e-6, gear_axial=-40e-6),
+    AssemblyErrors(offset=-80e-6, shaft_angle_error=5e-4, gear_axial=30e-6),
 )
 
 

@@ -19,7 +19,7 @@ from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.unloaded_contact import unloaded_motion
 
-STEPS = {"offset": 2e-7, "axial_shift": 2e-7, "shaft_angle_error": 1e-6}
+STEPS = {"offset": 2e-7, "gear_axial": 2e-7, "shaft_angle_error": 1e-6}
 FARTHER = 1.3
 
 

@@ -55,7 +55,7 @@ approach under load and alike for all points, but every ray from pinion to gear 
 """
 MOVES: Mapping[str, Mapping[str, float]] = {
     f"{key}_{sign:+d}": {f"tooth_pair.assembly.{key}_um": sign * SHIFT_UM}
-    for key in ("offset", "axial_shift")
+    for key in ("offset", "gear_axial")
     for sign in (1, -1)
 }
 """Changes of the config that move the gear, by the folder of their answers."""

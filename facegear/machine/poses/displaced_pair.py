@@ -75,7 +75,7 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
     errors = AssemblyErrors(
         offset=float(middle[0]),
         shaft_angle_error=tilt,
-        axial_shift=float(middle[2] - outward * np.sin(tilt)),
+        gear_axial=float(middle[2] - outward * np.sin(tilt)),
     )
     # What is left of the turn is about the pinion's own axis, -y, before the tilt about x.
     return Pose(errors, float(outward), float(np.arctan2(-turn[0, 2], turn[0, 0])), -around)
@@ -145,7 +145,7 @@ def assembled_motion(errors: AssemblyErrors, mean_radius: float) -> RigidMotion:
         m.
     """
     motion = body_motion((0.0, 0.0, 0.0), (errors.shaft_angle_error, 0.0, 0.0), (0.0, mean_radius, 0.0))
-    return RigidMotion(motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.axial_shift]))
+    return RigidMotion(motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.gear_axial]))
 
 
 def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:

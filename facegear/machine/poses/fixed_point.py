@@ -288,7 +288,7 @@ def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displace
     side = np.array([machine.layout.gears[g].sign for _, g in machine.layout.meshes])
     return MeshPoses(
         offset=motion.offset + side * nominal.offset,
-        axial_shift=motion.axial_shift + nominal.axial_shift,
+        gear_axial=motion.gear_axial + nominal.gear_axial,
         shaft_angle_error=motion.shaft_angle_error + side * nominal.shaft_angle_error,
         outward=motion.outward,
     )
@@ -406,7 +406,7 @@ def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
     for mesh, force in enumerate(result.forces.tolist()):
         back, torque = force < 0.0, float(result.torque[mesh])
         errors = result.poses.errors(mesh, back)
-        parts = (errors.offset, errors.shaft_angle_error, errors.axial_shift)
+        parts = (errors.offset, errors.shaft_angle_error, errors.gear_axial)
         key = (back, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")
         if key not in number_of_key:
             number_of_key[key] = len(designs)

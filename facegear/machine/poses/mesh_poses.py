@@ -16,7 +16,7 @@ from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.machine.linear_model import LinearModel
 from facegear.teeth.design import AssemblyErrors
 
-PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
+PARTS = ("offset", "gear_axial", "shaft_angle_error", "outward")
 """Parts of a pose, in the order of rows."""
 
 
@@ -24,12 +24,12 @@ PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
 class MeshPoses:
     """Poses of all meshes, each part (..., meshes), as the drive flanks of their own gears meet them.
 
-    - offset, axial_shift (m), shaft_angle_error (rad): assembly errors of the pair
+    - offset, gear_axial (m), shaft_angle_error (rad): assembly errors of the pair
     - outward: shift of the pinion along its axis, away from the gears' axis, m
     """
 
     offset: Array
-    axial_shift: Array
+    gear_axial: Array
     shaft_angle_error: Array
     outward: Array
 
@@ -53,7 +53,7 @@ class MeshPoses:
         return AssemblyErrors(
             offset=-offset if back else offset,
             shaft_angle_error=float(self.shaft_angle_error[mesh]),
-            axial_shift=float(self.axial_shift[mesh]),
+            gear_axial=float(self.gear_axial[mesh]),
         )
 
 

@@ -204,7 +204,7 @@ def unloaded_contacts(
             contact = contact_at(surface.pair, errors)
             if contact is None:
                 pose_text = (
-                    f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.axial_shift:.4g} um"
+                    f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.gear_axial:.4g} um"
                 )
                 raise NotConverged(
                     "operating pose", f"mesh {name}", f"no flanks face each other at {pose_text}"
@@ -392,4 +392,4 @@ def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: boo
 
 def _three(errors: AssemblyErrors) -> Array:
     """Return offset, m, axial shift, m, and shaft angle error, rad, as an array (3,)."""
-    return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])
+    return np.array([errors.offset, errors.gear_axial, errors.shaft_angle_error])

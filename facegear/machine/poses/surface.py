@@ -164,7 +164,7 @@ class PoseSurface:
         errors = self.nominal
         return {
             "pair": self.pair.array,
-            "errors": np.array([errors.offset, errors.shaft_angle_error, errors.axial_shift]),
+            "errors": np.array([errors.offset, errors.shaft_angle_error, errors.gear_axial]),
             "angle_rad": self.nodes.angles,
             "path_m": self.nodes.paths,
             "torque_n_m": self.nodes.torques,

@@ -30,7 +30,7 @@ gear's centre that is parallel to the tangent.
 MESH_COLUMNS = (
     *("mesh", "flank", "force_n", "force_as_assembled_n", "torque_n_m"),
     *REACTIONS,
-    *("offset_um", "axial_shift_um", "shaft_angle_error_deg", "outward_um", "closing_um"),
+    *("offset_um", "gear_axial_um", "shaft_angle_error_deg", "outward_um", "closing_um"),
     *("unloaded_path_mm", "path_mm", "path_as_assembled_mm", "to_inner_end_mm", "to_outer_end_mm"),
     "stiffness_factor",
 )
@@ -109,7 +109,7 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
                 "torque_n_m": at[0],
                 **dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True)),
                 "offset_um": 1e6 * result.poses.offset[mesh],
-                "axial_shift_um": 1e6 * result.poses.axial_shift[mesh],
+                "gear_axial_um": 1e6 * result.poses.gear_axial[mesh],
                 "shaft_angle_error_deg": np.degrees(angle),
                 "outward_um": 1e6 * result.poses.outward[mesh],
                 "closing_um": 1e6 * (back if on_back else drive)[mesh],

@@ -146,7 +146,7 @@ class ContactResult(Result):
 
         They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
 
-        Columns: gear, flank, offset_um, shaft_angle_error_deg, axial_shift_um, torque_n_m, positions,
+        Columns: gear, flank, offset_um, shaft_angle_error_deg, gear_axial_um, torque_n_m, positions,
         k_average_mean_n_per_m, k_average_min_n_per_m, k_average_max_n_per_m, k_local_mean_n_per_m,
         ste_peak_to_peak_um, ste_peak_to_peak_half_um, unloaded_peak_to_peak_um, pairs_min, pairs_max,
         pressure_mpa, pressure_error_mpa, tip_line_load_n_per_mm, tip_length_mm, fillet_share,

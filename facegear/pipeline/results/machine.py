@@ -291,7 +291,7 @@ class OperatingPoseResult(Result):
         the machine's own.
 
         Columns, among others: force_n, force_as_assembled_n, torque_n_m, tangential_force_n,
-        axial_force_n, overturning_moment_n_m, offset_um, axial_shift_um, shaft_angle_error_deg,
+        axial_force_n, overturning_moment_n_m, offset_um, gear_axial_um, shaft_angle_error_deg,
         outward_um, closing_um, unloaded_path_mm, to_inner_end_mm, to_outer_end_mm, stiffness_factor,
         mesh, flank.
 

@@ -113,7 +113,7 @@ def test_points_of_all_studies_are_counted_before_they_are_made():
 
 
 def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_it_jams():
-    values = changed(TWO, tooth_pair__pinion__thinning_um=0.0, tooth_pair__assembly__axial_shift_um=-50.0)
+    values = changed(TWO, tooth_pair__pinion__thinning_um=0.0, tooth_pair__assembly__gear_axial_um=-50.0)
     line = message(values)
     assert "tooth_pair.pinion.thinning_um = 0.0: must be at least " in line
     assert "the pair jams by " in line

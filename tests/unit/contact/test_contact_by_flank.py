@@ -26,7 +26,7 @@ CONTACT = {
     "root_stress": True,
     "sector": {"pinion_teeth": 5, "face_gear_teeth": 5},
 }
-ERRORS = {"offset_um": 50.0, "shaft_angle_error_deg": 0.02, "axial_shift_um": 10.0}
+ERRORS = {"offset_um": 50.0, "shaft_angle_error_deg": 0.02, "gear_axial_um": 10.0}
 
 
 def with_errors(**errors):
@@ -64,7 +64,7 @@ def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, fou
             own = with_errors(
                 offset_um=1e6 * met["offset"],
                 shaft_angle_error_deg=float(np.degrees(met["shaft_angle_error"])),
-                axial_shift_um=1e6 * met["axial_shift"],
+                gear_axial_um=1e6 * met["gear_axial"],
             )
             alone = contact_of(bodies, own, every_flank=False)["by_torque"]
             for name in ("k_average_mean_n_per_m", "pressure_mpa", "path_radius_mm", "ste_peak_to_peak_um"):
@@ -95,7 +95,7 @@ def test_without_errors_every_flank_costs_nothing_and_is_the_same(bodies, monkey
 
     original = analysis.loaded_contact
     monkeypatch.setattr(analysis, "loaded_contact", counted)
-    alike = contact_of(bodies, with_errors(axial_shift_um=10.0))
+    alike = contact_of(bodies, with_errors(gear_axial_um=10.0))
     assert len(solved) == 1
     rows = [one.drop(columns=["gear", "flank"]) for _, one in alike["by_flank"].groupby(["gear", "flank"])]
     for other in rows[1:]:

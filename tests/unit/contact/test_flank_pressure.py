@@ -191,7 +191,7 @@ def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent()
     capability="contact",
     module="facegear.contact.pressure",
 )
-@pytest.mark.parametrize("errors", [{}, {"offset": 2e-4, "shaft_angle_error": 2e-3, "axial_shift": 5e-5}])
+@pytest.mark.parametrize("errors", [{}, {"offset": 2e-4, "shaft_angle_error": 2e-3, "gear_axial": 5e-5}])
 @pytest.mark.parametrize("teeth", [23, 26])
 def test_contact_lines_lie_where_the_gap_is_least_and_curved_as_it_is(teeth, errors):
     design = replace(pair_design(teeth), assembly=AssemblyErrors(**errors))

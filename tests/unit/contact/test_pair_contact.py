@@ -187,7 +187,7 @@ def test_line_contact_pair_spreads_its_load_over_the_face(model_of):
         {"shaft_angle_error": radians(-0.2)},
         {"offset": 0.3e-3},
         {"offset": -0.3e-3},
-        {"axial_shift": 0.3e-3},
+        {"gear_axial": 0.3e-3},
     ],
 )
 def test_misaligned_pair_touches_at_an_edge_and_converges(model_of, errors):
@@ -196,9 +196,9 @@ def test_misaligned_pair_touches_at_an_edge_and_converges(model_of, errors):
 
 def test_gear_pressed_into_the_pinion_still_drives_while_its_back_sides_overlap(model_of):
     """The drive side alone is solved; the overlap is the geometry check's to refuse."""
-    model = misaligned(model_of(), axial_shift=-0.3e-3)
+    model = misaligned(model_of(), gear_axial=-0.3e-3)
     for result in sound(loaded_contact(model, np.arange(4) / 4, TORQUES)):
-        along = model.design.assembly.axial_shift * np.sin(model.design.pressure_angle)
+        along = model.design.assembly.gear_axial * np.sin(model.design.pressure_angle)
         assert result.unloaded_error == pytest.approx(along, rel=0.15)
     touching = unloaded_contact(model.design, [0.0])
     gaps = smallest_gaps(model.design, touching.phi1, touching.phi2)

@@ -19,7 +19,7 @@ from facegear.teeth.mesh_sizes import MeshSizes
 
 RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}
 GAPS = {
-    "tooth_pair.assembly": {"offset_um": 20, "shaft_angle_error_deg": 0.01, "axial_shift_um": 30},
+    "tooth_pair.assembly": {"offset_um": 20, "shaft_angle_error_deg": 0.01, "gear_axial_um": 30},
     "tooth_pair.pinion.tip_relief": RELIEF,
     "tooth_pair.pinion.root_relief": RELIEF,
     "tooth_pair.pinion.lead_crowning": {**RELIEF, "length_mm": 20},

@@ -55,19 +55,19 @@ def test_an_offset_closes_the_upper_mesh_by_what_it_opens_the_lower_one(design):
 
 def test_an_axial_shim_is_twice_its_sine_of_backlash(design):
     upper, lower = lumped(y=-SHIFT)
-    opened = closed_by(design, axial_shift=SHIFT)
+    opened = closed_by(design, gear_axial=SHIFT)
     np.testing.assert_allclose(opened, upper, rtol=2e-3)
     assert -opened.sum() == pytest.approx(2.0 * SHIFT * np.sin(np.radians(25.0)), rel=2e-3)
-    np.testing.assert_allclose(closed_by(design, axial_shift=-SHIFT), lower, rtol=2e-3)
+    np.testing.assert_allclose(closed_by(design, gear_axial=-SHIFT), lower, rtol=2e-3)
 
 
 @pytest.mark.parametrize(
     "assembly",
     [
         {"offset": 60e-6},
-        {"axial_shift": 40e-6},
+        {"gear_axial": 40e-6},
         {"shaft_angle_error": np.radians(0.05)},
-        {"offset": -30e-6, "axial_shift": 25e-6, "shaft_angle_error": np.radians(-0.03)},
+        {"offset": -30e-6, "gear_axial": 25e-6, "shaft_angle_error": np.radians(-0.03)},
     ],
 )
 @pytest.mark.parametrize("config", ["paper", "two_pinion"])

@@ -23,7 +23,7 @@ def section():
 
 
 def test_config_units_become_si(section):
-    section["assembly"] = {"offset_um": 10.0, "shaft_angle_error_deg": 0.1, "axial_shift_um": -20.0}
+    section["assembly"] = {"offset_um": 10.0, "shaft_angle_error_deg": 0.1, "gear_axial_um": -20.0}
     section["pinion"]["tip_relief"] = {"amount_um": 15.0, "length_mm": 2.0}
     design = pair_design(parse(ToothPair, section))
     assert design.module == pytest.approx(3.75e-3)

@@ -99,12 +99,12 @@ def test_displacements_go_with_young_s_modulus_and_stress_in_the_fillets_does_no
 
 def test_what_the_assembly_adds_to_the_backlash_counts_for_every_mesh():
     own = {"transmission.single_meshes": {"tail idler/upper": {"backlash_um": 90.0}}}
-    gearbox = machine(cause("shim", "tooth_pair.assembly.axial_shift_um", 20.0)).with_values(own)
+    gearbox = machine(cause("shim", "tooth_pair.assembly.gear_axial_um", 20.0)).with_values(own)
     needs = stage_needs("tolerances_chunk", gearbox.values)
     flanks = stored_flanks(gearbox._chain.arguments("tolerances_chunk")["flanks"])
     mesh = in_contact.meshes_in_contact(needs["pair"], flanks)
     shifted = {**needs["pair"]["tooth_pair"]}
-    shifted["assembly"] = {**shifted["assembly"], "axial_shift_um": 20.0}
+    shifted["assembly"] = {**shifted["assembly"], "gear_axial_um": 20.0}
     machine_section = mesh(shifted).in_machine(needs["transmission"])
     added = machine_section["backlash_um"] - 100.0
     # both flanks open by the normal part of the shift; how far depends a little on where they are nearest

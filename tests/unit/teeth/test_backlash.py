@@ -18,7 +18,7 @@ from facegear.teeth.validate import check
 
 def test_backlash_before_meshing_is_that_of_the_full_analysis_and_the_path_reported_is_the_real_one(pair):
     """The nominal radius was printed for a misaligned pair whose path lies elsewhere."""
-    design = replace(pair(26), assembly=AssemblyErrors(offset=5e-5, shaft_angle_error=5e-4, axial_shift=2e-5))
+    design = replace(pair(26), assembly=AssemblyErrors(offset=5e-5, shaft_angle_error=5e-4, gear_axial=2e-5))
     analysis = analyse(design, positions=8)
     assert normal_backlash(design) == pytest.approx(analysis.backlash.min(), abs=1e-9)
     message = path_text(pair_record(design, analysis))

@@ -61,12 +61,12 @@ def test_backlash_is_the_thinning(pair):
     module="facegear.teeth.analysis",
 )
 def test_pulling_the_gear_back_opens_both_flanks(pair):
-    result = analyse(pair(26, axial_shift=1e-6, thinning=1e-4), positions=8)
+    result = analyse(pair(26, gear_axial=1e-6, thinning=1e-4), positions=8)
     agrees("backlash, m", result.backlash - 1e-4, 2e-6 * np.sin(np.radians(25)), relative=0.02)
 
 
 def test_pushing_the_gear_in_beyond_the_backlash_is_interference(pair):
-    result = analyse(pair(26, axial_shift=-1e-4), positions=8)
+    result = analyse(pair(26, gear_axial=-1e-4), positions=8)
     assert np.all(result.backlash < 0)
     assert result.interference is not None
     assert result.interference.side == "back"

@@ -26,7 +26,7 @@ of the normal (deg) of the drive and the back flank, computed once by displacing
 @pytest.fixture(scope="module")
 def posed(pair):
     def build(offset_um=0.0, shift_um=0.0, angle_deg=0.0, **design):
-        errors = {"offset": 1e-6 * offset_um, "axial_shift": 1e-6 * shift_um}
+        errors = {"offset": 1e-6 * offset_um, "gear_axial": 1e-6 * shift_um}
         return pair(thinning=1e-4, shaft_angle_error=np.radians(angle_deg), **errors, **design)
 
     return build
@@ -79,7 +79,7 @@ def test_the_transmission_error_changes_with_a_shift_by_the_common_normal(posed,
         return conjugate_contact(replace(design, assembly=errors)).transmission_error
 
     by_offset = (error(offset=step) - error(offset=-step)) / (2 * step)
-    by_shift = (error(axial_shift=step) - error(axial_shift=-step)) / (2 * step)
+    by_shift = (error(gear_axial=step) - error(gear_axial=-step)) / (2 * step)
     assert by_offset == pytest.approx(np.cos(contact.psi) * np.cos(contact.turn), abs=1e-7)
     assert by_shift == pytest.approx(-np.sin(contact.psi), abs=1e-7)
 

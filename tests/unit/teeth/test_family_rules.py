@@ -22,7 +22,7 @@ from facegear.teeth.unloaded_contact import gear_backlash
 SIDES = (1, -1)
 CASES = pytest.mark.parametrize(("name", "side"), [(name, side) for name in NAMES for side in SIDES])
 MIRROR = np.array([-1.0, 1.0, 1.0])
-FORCE_STEPS = {"offset": 0, "axial_shift": 1, "shaft_angle_error": 2, "outwards": 3}
+FORCE_STEPS = {"offset": 0, "gear_axial": 1, "shaft_angle_error": 2, "outwards": 3}
 
 
 def posed(key, value, pose=ERRORS):
@@ -212,7 +212,7 @@ def test_backlash_has_its_closed_form(name):
     apart = 1e-8
     normals = [contact_line(family, side).normal for side in SIDES]
     first = -apart * sum(normal[2] / abs(normal[0]) for normal in normals)
-    change = gear_backlash(family, PinionPose(AssemblyErrors(axial_shift=apart))) - gear_backlash(family)
+    change = gear_backlash(family, PinionPose(AssemblyErrors(gear_axial=apart))) - gear_backlash(family)
     assert change == pytest.approx(first, rel=1e-3)
 
 
@@ -275,10 +275,10 @@ def test_thinning_moves_the_helicoid_by_its_normal_share():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_error_is_a_curved_function_of_the_axial_shift(name):
+def test_the_error_is_a_curved_function_of_the_gear_axial(name):
     family, step = public_design(name), 5e-6
     at = [
-        contact_line(family, 1, PinionPose(AssemblyErrors(axial_shift=k * step))).transmission_error
+        contact_line(family, 1, PinionPose(AssemblyErrors(gear_axial=k * step))).transmission_error
         for k in (-2, -1, 1, 2)
     ]
     third = (at[3] - 2 * at[2] + 2 * at[1] - at[0]) / (2 * step**3)

@@ -40,7 +40,7 @@ def moved(design, errors):
 @pytest.mark.parametrize(("errors", "drive", "back"), PATHS)
 def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, errors, drive, back):
     offset, shift, angle = errors
-    given_errors = AssemblyErrors(offset=offset, shaft_angle_error=angle, axial_shift=shift)
+    given_errors = AssemblyErrors(offset=offset, shaft_angle_error=angle, gear_axial=shift)
     for flank, radius in zip(FLANKS, (drive, back), strict=True):
         design = moved(pair(26), errors_at(given_errors, "upper", flank))
         _, along_the_pinion = unloaded_contact(design, np.array([0.01, 0.1])).path
@@ -79,7 +79,7 @@ ERRORS = st.builds(
     AssemblyErrors,
     offset=st.sampled_from([0.0, 5e-5, -2e-5]),
     shaft_angle_error=st.sampled_from([0.0, 3e-4]),
-    axial_shift=st.sampled_from([0.0, 4e-5]),
+    gear_axial=st.sampled_from([0.0, 4e-5]),
 )
 
 

@@ -26,7 +26,7 @@ def test_with_backlash_to_clear_them_tips_in_fillets_do_not_jam(pair):
 
 
 def test_a_tip_in_the_root_land_jams_at_every_turn(pair):
-    usual = pair(thinning=1e-3, axial_shift=-1e-4)
+    usual = pair(thinning=1e-3, gear_axial=-1e-4)
     tall = replace(usual, face_gear=replace(usual.face_gear, addendum=1.24 * usual.module))
     found = analyse(tall, 8)
     assert found.interference is not None

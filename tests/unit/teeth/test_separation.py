@@ -161,7 +161,7 @@ def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
 )
 def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
     """Brute force: distance along the ray to the nearest of half a million gear points."""
-    design = pair(26, offset=1e-4, shaft_angle_error=1e-3, axial_shift=5e-5, thinning=1e-4)
+    design = pair(26, offset=1e-4, shaft_angle_error=1e-3, gear_axial=5e-5, thinning=1e-4)
     points = flank_points(design, [0.35, 0.4, 0.5], [0.256, 0.262, 0.27])
     phi1 = np.array([0.02])
     found = separation(design, points, phi1, conjugate_angle(design, phi1), 0)
@@ -202,7 +202,7 @@ def test_lead_crowning_is_a_parabola_in_the_face(pair):
 def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
     """A spur pinion with a face gear is insensitive to alignment: the path moves, the ratio stays exact."""
     nominal = pair(26).gear_pitch_radius
-    for errors in ({"offset": 1e-4}, {"axial_shift": 1e-4}, {"shaft_angle_error": 2e-3}):
+    for errors in ({"offset": 1e-4}, {"gear_axial": 1e-4}, {"shaft_angle_error": 2e-3}):
         design = pair(26, **errors)
         contact = unloaded_contact(design, pitch(design, 8))
         assert np.ptp(contact.transmission_error) < 1e-11
@@ -216,9 +216,9 @@ def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
     capability="geometry",
     module="facegear.teeth.unloaded_contact",
 )
-def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
+def test_gear_axial_opens_each_flank_by_its_normal_part(pair):
     shift = 1e-7
-    contact = unloaded_contact(pair(26, axial_shift=shift), [0.0])
+    contact = unloaded_contact(pair(26, gear_axial=shift), [0.0])
     agrees(
         "transmission error, m", contact.transmission_error[0], -shift * np.sin(np.radians(25)), relative=2e-3
     )

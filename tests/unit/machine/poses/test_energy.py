@@ -269,7 +269,7 @@ def test_meshes_with_forces_that_follow_the_load_are_pressed_in_as_contact_at_th
     np.testing.assert_allclose(over[carrying], known, rtol=5e-4)
 
 
-PARTS = ["offset", "axial_shift", "shaft_angle_error"]
+PARTS = ["offset", "gear_axial", "shaft_angle_error"]
 
 
 @pytest.fixture(scope="module")

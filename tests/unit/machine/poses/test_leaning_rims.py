@@ -27,7 +27,7 @@ from validation.poses.measure import TILTING
 ORDERS = 4
 TILTING_STIFFNESS = 4e6
 """N m/rad."""
-POSE = {"offset": "m", "axial_shift": "m", "shaft_angle_error": "rad"}
+POSE = {"offset": "m", "gear_axial": "m", "shaft_angle_error": "rad"}
 
 
 @pytest.fixture(scope="module")

@@ -96,7 +96,7 @@ def moved_by(model: LinearModel, size=1.0):
 def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):
     pose = pose_of(*motions(side, design), design.mean_radius)
     errors = pose.errors
-    parts = (1e6 * errors.offset, 1e6 * errors.axial_shift, 1e6 * pose.outward)
+    parts = (1e6 * errors.offset, 1e6 * errors.gear_axial, 1e6 * pose.outward)
     published = PUBLISHED[side]
     agrees("offset and axial shift, um", parts[:2], published[:2], absolute=6e-7)
     agrees("error of the shaft angle, deg", np.degrees(errors.shaft_angle_error), published[2], absolute=6e-9)
@@ -141,8 +141,8 @@ def test_the_first_order_of_a_pose_errs_four_times_less_for_half_the_motion(desi
         pose = pose_of(*motions(side, design, size), design.mean_radius)
         exact = pose.errors
         first = linear.errors(mesh)
-        parts = (first.offset, first.axial_shift, 0.1 * first.shaft_angle_error, linear.outward[mesh])
-        known = (exact.offset, exact.axial_shift, 0.1 * exact.shaft_angle_error, pose.outward)
+        parts = (first.offset, first.gear_axial, 0.1 * first.shaft_angle_error, linear.outward[mesh])
+        known = (exact.offset, exact.gear_axial, 0.1 * exact.shaft_angle_error, pose.outward)
         differences.append(np.abs(np.array(parts) - known).max())
     assert differences[0] < 2e-8
     assert differences[0] / differences[1] == pytest.approx(4.0, rel=1e-2)
@@ -173,7 +173,7 @@ def test_along_the_line_of_action_a_pose_and_the_machine_s_own_directions_are_th
 def test_a_motion_along_the_line_of_action_changes_the_deflection_alone(design, offset):
     """Path and slope of the unloaded contact stay for any motion that is along the common normal."""
     shift = -(offset * np.tan(design.pressure_angle))
-    posed = replace(design, assembly=AssemblyErrors(offset=offset, axial_shift=shift))
+    posed = replace(design, assembly=AssemblyErrors(offset=offset, gear_axial=shift))
     contact = conjugate_contact(posed)
     assert contact.y == pytest.approx(design.gear_pitch_radius, abs=1e-12)
     assert contact.psi == pytest.approx(design.pressure_angle, abs=1e-12)

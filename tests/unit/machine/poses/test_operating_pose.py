@@ -158,7 +158,7 @@ def test_what_the_exact_contact_closes_beyond_first_order_is_the_square_of_the_m
     pair, layout = surface.pair, result.machine.layout
     angle, meshes = pair.pressure_angle, len(layout.meshes)
     offset = np.where(result.forces < 0.0, -result.poses.offset, result.poses.offset)
-    across = offset * np.sin(angle) + result.poses.axial_shift * np.cos(angle)
+    across = offset * np.sin(angle) + result.poses.gear_axial * np.cos(angle)
     second = across**2 / (2.0 * pair.shaper_lift * np.sin(angle))
     drive, back = np.split(result.flank_closure, 2)
     closing = np.where(result.forces < 0.0, back, drive)
@@ -178,7 +178,7 @@ def test_a_position_error_of_a_pinion_is_a_pose_as_well(surface):
     lower = machine.layout.mesh_index(1, Side.LOWER)
     for mesh, side in ((upper, 1.0), (lower, -1.0)):
         assert result.poses.offset[mesh] == pytest.approx(-side * 60e-6, abs=2e-8)
-        assert result.poses.axial_shift[mesh] == pytest.approx(-side * 20e-6, abs=2e-8)
+        assert result.poses.gear_axial[mesh] == pytest.approx(-side * 20e-6, abs=2e-8)
 
 
 def test_a_contact_that_leaves_the_face_is_named_with_the_load(concentric, surface):
