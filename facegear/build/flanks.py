@@ -5,7 +5,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.schema.base import refuse
 from facegear.schema.flanks import LARGEST, SIDES, FlanksSection, GridSection, Side
-from facegear.teeth.design import DeviationGrid, Flanks
+from facegear.teeth.flank_shapes import DeviationGrid, Flanks
 from facegear.teeth.modifications import deviation
 from facegear.teeth.surfaces import Face, nominal_points
 

@@ -28,13 +28,12 @@ from facegear.schema.tooth_pair import (
 from facegear.teeth.design import (
     AssemblyErrors,
     FaceGearGeometry,
-    GearModifications,
     Material,
     PairDesign,
     PinionGeometry,
-    Relief,
     Shaper,
 )
+from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.surfaces import flank_face
 from facegear.teeth.validate import check

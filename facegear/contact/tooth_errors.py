@@ -20,7 +20,8 @@ from facegear.contact.teeth import ContactSide
 from facegear.quantities import BODIES, Body
 from facegear.teeth import face_gear, pinion
 from facegear.teeth.closest import PAIRS
-from facegear.teeth.design import DeviationGrid, PairDesign
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import DeviationGrid
 from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
 from facegear.teeth.opposite import tip_edge_feet
 from facegear.teeth.placement import pinion_angle

@@ -40,7 +40,8 @@ from facegear.schema.transmission import Transmission
 from facegear.strength.contact_pressure import PairAnswers, contact_pressure
 from facegear.strength.passage import PassingTension
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
-from facegear.teeth.design import Flanks, GearModifications, PairDesign
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import Flanks, GearModifications
 
 Values = Mapping[str, Any]
 GearFlanks = Mapping[str, "GearFlank"]

@@ -14,8 +14,9 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.teeth.bounded_contact import contact_path
-from facegear.teeth.design import AssemblyErrors, GearModifications, PairDesign
+from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line, find_line, place_line
+from facegear.teeth.flank_shapes import GearModifications
 from facegear.teeth.generated_flank import GearFlank
 from facegear.teeth.tooth_family import Helicoid, RelativeMotion
 

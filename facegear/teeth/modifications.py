@@ -15,14 +15,8 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.teeth import face_gear, face_gear_fillet
-from facegear.teeth.design import (
-    DeviationGrid,
-    GearModifications,
-    PairDesign,
-    linear,
-    parabola,
-    parabola_curvature,
-)
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import DeviationGrid, GearModifications, linear, parabola, parabola_curvature
 
 CUBIC = 3
 """Degree of the spline through deviations, where there are enough lines for it."""

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.teeth.design import PairDesign, linear, parabola
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import linear, parabola
 from facegear.teeth.helicoid import PinionFlank, pinion_fillet, pinion_start
 from facegear.teeth.modifications import deviation
 

@@ -16,7 +16,8 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.quantities import Body
 from facegear.teeth import face_gear, face_gear_fillet, pinion
-from facegear.teeth.design import PairDesign, Relief
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.modifications import fillet_as_made, flank_as_made
 from facegear.teeth.placement import body_rotation
 from facegear.teeth.surfaces import fillet_points, flank_points

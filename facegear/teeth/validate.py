@@ -9,7 +9,8 @@ from scipy.optimize import brentq
 
 from facegear.errors import GeometryError
 from facegear.teeth import face_gear, face_gear_fillet, pinion
-from facegear.teeth.design import PairDesign, Relief, as_cut
+from facegear.teeth.design import PairDesign, as_cut
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.limits import ROUNDING, THINNEST_LAND, RadiusLimits, face_range, radius_limits
 from facegear.teeth.modifications import flank_end
 

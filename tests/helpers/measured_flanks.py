@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from facegear.teeth import face_gear
-from facegear.teeth.design import DeviationGrid
+from facegear.teeth.flank_shapes import DeviationGrid
 from facegear.teeth.placement import to_left_flank
 from facegear.teeth.separation import Separation, separation
 from facegear.teeth.surfaces import SurfacePoints, flank_face

@@ -5,7 +5,8 @@ from math import radians
 import pytest
 from references import against, agrees
 
-from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.flank_shapes import Relief
 from validation.contact.twin_study import twin_gears, twin_study
 
 M = 3.75e-3

@@ -21,7 +21,8 @@ from facegear.errors import ConfigErrors, InvalidInput
 from facegear.pipeline.needs import stage_needs
 from facegear.schema.base import parse
 from facegear.schema.contact import Contact
-from facegear.teeth.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 
 STEEL = Material(206e9, 0.3)

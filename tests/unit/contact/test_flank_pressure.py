@@ -23,7 +23,8 @@ from facegear.contact.pressure import INSIDE, flank_pressure, line_loads
 from facegear.contact.resolution import PLANES, ellipse_half_length
 from facegear.teeth.analysis import path_curvatures
 from facegear.teeth.closest import PAIRS
-from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_points
 from facegear.teeth.unloaded_contact import unloaded_contact

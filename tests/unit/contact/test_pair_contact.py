@@ -22,7 +22,8 @@ from facegear.meshing.stiffness_source import stiffness_from_contact, unloaded_e
 from facegear.schema.base import parse
 from facegear.schema.stiffness import MeshStiffness
 from facegear.teeth.clearance import smallest_gaps
-from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.unloaded_contact import unloaded_contact
 
 TORQUES = [100.0, 600.0]

@@ -14,7 +14,8 @@ from facegear.pipeline.outcome import Outcome
 from facegear.pipeline.results.store import Store
 from facegear.pipeline.stages import contact as contact_stage
 from facegear.pipeline.stages import tooth_bodies as compliance_stage
-from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.mesh_sizes import MeshSizes
 
 RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}

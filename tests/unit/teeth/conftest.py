@@ -5,7 +5,8 @@ from math import radians
 
 import pytest
 
-from facegear.teeth.design import AssemblyErrors, FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.design import AssemblyErrors, FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.mesh_sizes import named_sizes
 from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
 

@@ -8,8 +8,9 @@ import pytest
 from facegear.report.figures.teeth import path_text
 from facegear.teeth import unloaded_contact
 from facegear.teeth.analysis import analyse
-from facegear.teeth.design import AssemblyErrors, GearModifications, Relief
+from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.document import pair_record
+from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.rays import gear_rays
 from facegear.teeth.unloaded_contact import normal_backlash

@@ -6,7 +6,7 @@ from references import against, agrees
 
 from facegear.teeth.analysis import analyse
 from facegear.teeth.clearance import smallest_gaps
-from facegear.teeth.design import Relief
+from facegear.teeth.flank_shapes import Relief
 
 
 @pytest.mark.parametrize(("teeth", "depth_um"), [(26, 24.0), (24, 51.0)])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 from facegear.teeth.conjugate import conjugate_contact, exact_contact
-from facegear.teeth.design import Relief
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.placement import mirror_design
 from facegear.teeth.unloaded_contact import normal_backlash, searched_contact, unloaded_contact
 

@@ -10,7 +10,7 @@ from references import against, agrees
 from facegear.teeth import face_gear, modifications
 from facegear.teeth.analysis import path_curvatures
 from facegear.teeth.curvature import opposite_curvatures
-from facegear.teeth.design import GearModifications, Relief
+from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.modifications import derivative, deviation
 from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_flank
 from facegear.teeth.rays import FLANK

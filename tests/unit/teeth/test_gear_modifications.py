@@ -9,7 +9,7 @@ from references import against, agrees
 
 from facegear.teeth import face_gear, modifications
 from facegear.teeth.curvature import opposite_curvatures
-from facegear.teeth.design import GearModifications, Relief
+from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.placement import mirror_design, to_left_flank
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation

@@ -7,7 +7,7 @@ import pytest
 from references import against, agrees
 
 from facegear.teeth import pinion
-from facegear.teeth.design import Relief
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.helicoid import pinion_fillet
 from facegear.teeth.surfaces import fillet_points
 

@@ -10,8 +10,8 @@ from scipy.optimize import root
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.analysis import path_curvatures, section_contact_ratio
 from facegear.teeth.curvature import relative_curvatures
-from facegear.teeth.design import Relief
 from facegear.teeth.document import ease_off
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.limits import sharpest_fillet_radius
 from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_flank
 from facegear.teeth.rays import FILLET, FLANK, ROOT_LAND, TIP_LAND

@@ -11,7 +11,7 @@ from facegear.errors import NotConverged
 from facegear.io.cad import write_step, write_stl
 from facegear.quantities import BODIES
 from facegear.teeth import face_gear
-from facegear.teeth.design import Relief
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.solids import solid, triangles, volume
 from facegear.teeth.surfaces import flank_points
 

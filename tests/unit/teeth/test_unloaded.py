@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
 

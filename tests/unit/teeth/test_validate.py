@@ -10,14 +10,8 @@ from hypothesis import strategies as st
 
 from facegear.errors import GeometryError
 from facegear.teeth.clearance import pinion_outline
-from facegear.teeth.design import (
-    FaceGearGeometry,
-    GearModifications,
-    PairDesign,
-    PinionGeometry,
-    Relief,
-    Shaper,
-)
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.limits import face_range, radius_limits
 from facegear.teeth.mesh_quality import scaled_jacobians
 from facegear.teeth.mesh_sizes import named_sizes
