@@ -1,4 +1,4 @@
-"""What a casing must do whatever its numbers: springs in series, limits, units, whole elements, damping."""
+"""Casings do what they must for any numbers: springs in series, limits, units, whole elements, damping."""
 
 from dataclasses import replace
 
