@@ -243,7 +243,9 @@ def massive_motions(linear: LinearModel) -> Array | None:
     with_partners = np.flatnonzero(~is_alone)
     if not with_partners.size:
         return None
-    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)[with_partners]
+    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)[
+        with_partners
+    ]
     values, vectors = np.linalg.eigh(mass[np.ix_(with_partners, with_partners)] * np.outer(scale, scale))
     is_massless = values <= MASSLESS
     if not is_massless.any():
@@ -254,7 +256,10 @@ def massive_motions(linear: LinearModel) -> Array | None:
     massive = np.zeros((linear.size, linear.size - massless.shape[1]))
     alone_count = int(is_alone.sum())
     massive[is_alone, :alone_count] = np.eye(alone_count)
-    massless[with_partners], massive[with_partners, alone_count:] = vectors[:, is_massless], vectors[:, ~is_massless]
+    massless[with_partners], massive[with_partners, alone_count:] = (
+        vectors[:, is_massless],
+        vectors[:, ~is_massless],
+    )
     stiffness = massless.T @ linear.stiffness
     return np.asarray(massive - massless @ np.linalg.solve(stiffness @ massless, stiffness @ massive))
 
