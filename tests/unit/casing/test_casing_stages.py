@@ -8,10 +8,12 @@ import pytest
 
 from facegear.harmonics import Harmonics
 from facegear.machine.casing_response import ORDERS, mesh_excitations, sensor_accelerations
+from facegear.machine.loaded_modes import machine_in_motion
 from facegear.machine.machine import Damping, OpenFlanks
 from facegear.machine.modes import ModeClass, modes_of, name_modes
 from facegear.machine.shaft_orders import loaded_machine
 from facegear.machine.statics import equilibria, mean_equilibrium
+from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.pipeline.stages.casing import casing_loads, casing_response
 from facegear.report.figures.casing import casing_figures, sensor_figures
 from tests.helpers.public_casing import mount_public
@@ -103,6 +105,28 @@ def test_slow_meshes_move_the_sensors_as_statics_do(machine):
     amplitudes = 2.0 / 32 * np.fft.rfft(moved, axis=0)[1:3]
     orders = np.array([1.0, 2.0])[:, None]
     np.testing.assert_allclose(slow[:2], -((orders * omega) ** 2) * amplitudes, rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [1500.0, 3000.0])
+def test_slow_modes_of_the_casing_are_enough_for_motion(machine, speed, monkeypatch):
+    amplitudes = []
+    for limit in (1.5, 1e6):
+        monkeypatch.setattr("facegear.machine.loaded_modes.MOTION_LIMIT", limit)
+        model = build_model(machine)
+        motion = simulate(model, speed).coordinates @ model.reduction.basis.T
+        amplitudes.append(np.ptp(motion @ model.machine.linear.rows.T, axis=0))
+    np.testing.assert_allclose(amplitudes[0], amplitudes[1], rtol=5e-3)
+
+
+def test_motion_on_a_casing_without_mass_has_fewer_coordinates(machine):
+    massless = make_small_machine(casing=place_on(mount_public(0, with_mass=False)), damping=machine.damping)
+    in_motion = machine_in_motion(massless)
+    # Gears have inertia about their diameters, which stands on their seats.
+    assert in_motion.linear.size <= massless.layout.dof + 4
+    assert np.linalg.eigvalsh(in_motion.linear.mass)[0] > 0.0
+    assert simulate(build_model(massless), 3000.0).label == "period-1"
+    forces = [mean_equilibrium(one).forces for one in (massless, in_motion)]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-9)
 
 
 def test_the_sensor_table_holds_excited_orders_alone(machine):
