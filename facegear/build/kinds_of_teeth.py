@@ -10,6 +10,7 @@ from typing import Any
 
 from facegear.errors import ConfigError
 from facegear.number_format import count_noun
+from facegear.schema.changes import PAIR
 from facegear.schema.tooth_pair import flank_angles_deg
 
 SPUR_VALUES: Mapping[str, float] = {
@@ -94,6 +95,31 @@ def require_kind(names: Iterable[str], pair: Mapping[str, Any]) -> None:
     """
     for error in refused_keys(names, pair).values():
         raise error
+
+
+def require_moved_kind(key: str, moved_keys: Iterable[str], stage: str) -> None:
+    """Refuse samples or designs with teeth of a kind that their stage cannot take yet.
+
+    Parameters
+    ----------
+    key : str
+        Key of the config that names the moved keys.
+    moved_keys : iterable of str
+        Dotted keys of the config that differ from sample to sample, or design to design.
+    stage : str
+        Name of the stage that computes them.
+
+    Raises
+    ------
+    ConfigError
+        For the first such key.
+    """
+    kinds = {f"{PAIR}{kind}" for kind in SPUR_ONLY.get(stage, ()) if kind != FLANKS}
+    if FLANKS in SPUR_ONLY.get(stage, ()):
+        kinds |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
+    for moved in moved_keys:
+        if moved in kinds:
+            raise ConfigError(key, moved, f"another key, as stage {stage} cannot take such teeth yet")
 
 
 def _unlike_spur(pair: Mapping[str, Any]) -> dict[str, tuple[Any, str]]:
