@@ -40,7 +40,6 @@ SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("load_sharing", "load_sharing_reference", "hunting", "sharing_map"), ALL_KINDS),
     **dict.fromkeys(("following", "duty_poses", "duty_loads"), ALL_KINDS),
     **dict.fromkeys(("tolerances_chunk", "tolerances_map", "search_island", "search"), ALL_KINDS),
-    "rexs": ALL_KINDS,
 }
 """Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""
 

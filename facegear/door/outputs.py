@@ -28,7 +28,6 @@ ENDINGS = (".step", ".stp", ".stl", ".glb", ".fmu", ".rexs", ".csv")
 EXPORTED_STAGES = {
     **dict.fromkeys((".step", ".stp", ".stl"), "cad"),
     ".glb": "scene",
-    ".rexs": "rexs",
     ".csv": "topography",
 }
 """Names in `SPUR_ONLY` of files that no chain of stages makes, by their ending."""

@@ -18,7 +18,7 @@ from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
-NOT_STAGES = {"displaced_contact", "rexs", "scene"}
+NOT_STAGES = {"displaced_contact", "scene"}
 """Names in SPUR_ONLY of answers from Python that no stage gives."""
 
 
