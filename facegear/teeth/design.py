@@ -256,8 +256,8 @@ class PairDesign:
 
     @cached_property
     def shaper_base_radius(self) -> float:
-        """Base radius of the shaper, m."""
-        return self.shaper_pitch_radius * cos(self.pressure_angle)
+        """Radius of the base cylinder of the shaper's drive flank, m."""
+        return self.family.shaper_flanks[0].base_radius
 
     @cached_property
     def shaper_tip_radius(self) -> float:
