@@ -29,7 +29,7 @@ def write_gltf(
     """Write whole gears in mesh, modifications included, as a binary glTF scene; assembly errors are left
     out.
 
-    Each gear is placed in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
+    Each gear is transform in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
 
     Parameters
     ----------
@@ -106,11 +106,11 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
         Homogeneous matrix for column vectors; rotations dimensionless, translations in m.
     """
     teeth = design.pinion.teeth
-    placed = np.eye(4)
+    transform = np.eye(4)
     spun = body_rotation("pinion", angle * design.face_gear.teeth / teeth - pi / teeth)
-    placed[:3, :3] = design.family.motion.basis.T @ spun
-    placed[0, 3] = design.offset
-    return _about_axis(angle) @ placed
+    transform[:3, :3] = design.family.motion.basis.T @ spun
+    transform[0, 3] = design.offset
+    return _about_axis(angle) @ transform
 
 
 def gear_transform(design: PairDesign, side: str) -> Array:

@@ -57,7 +57,7 @@ def winding(points, vertices, faces):
 
 
 def points_near(vertices, pinion):
-    """Some fifty vertices of a gear within the pinion's box."""
+    """Return some fifty vertices of a gear within the pinion's box."""
     low, high = pinion.min(axis=0), pinion.max(axis=0)
     inside = vertices[((vertices > low) & (vertices < high)).all(axis=1)]
     return inside[:: max(1, len(inside) // 50)]
