@@ -82,7 +82,7 @@ def blank(design: PairDesign) -> Blank:
         outer=gear.outer_radius,
         tip_plane=design.gear_tip_plane,
         root_plane=design.gear_root_plane,
-        root_start=pitch / 2 - float(face_gear_fillet.root_half_angle(design)),
+        root_start=pitch / 2 - float(face_gear_fillet.root_half_angle(design, gear.inner_radius)),
         pitch=pitch,
         aside=3 * design.module,
         fillet_top=float(tops.max()) + 0.01 * design.module,

@@ -68,7 +68,7 @@ class Outline:
         """
         fraction = fraction[:, None]
         if self.body == "pinion":
-            top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design)
+            top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design, self.design.middle)
             roll = np.sqrt(top**2 + fraction * (bottom**2 - top**2))
             return _has_same_sections(roll, self.planes[None, :])
         radius = self.planes[None, :]
@@ -105,7 +105,9 @@ class Outline:
         grid = np.linspace(0, 1, 401)
         if self.body == "pinion":
             start = self.design.pressure_angle
-            radius, angle = pinion.trochoid_point(self.design, start + grid * (pi / 2 - start))
+            radius, angle = pinion.trochoid_point(
+                self.design, start + grid * (pi / 2 - start), self.design.middle
+            )
             x, h = radius * angle, radius
         else:
             middle = self.planes[len(self.planes) // 2]
@@ -135,17 +137,19 @@ class Outline:
         if segment == "fillet":
             u, v = self.fillet_parameters(fraction)
             if self.body == "pinion":
-                radius, angle = pinion.trochoid_point(self.design, u)
+                radius, angle = pinion.trochoid_point(self.design, u, v)
                 return angle, radius
             return face_gear_fillet.fillet_section(self.design, v, u)
         fraction = np.broadcast_to(fraction[:, None], (len(fraction), len(self.planes)))
         if segment == "root_land":
-            half = pinion if self.body == "pinion" else face_gear_fillet
-            start = self.half_pitch - half.root_half_angle(self.design)
+            half = np.full(len(self.planes), pinion.root_half_angle(self.design))
+            if self.body == "face_gear":
+                half = face_gear_fillet.root_half_angle(self.design, self.planes)
+            start = self.half_pitch - half
             angle = start + fraction * (self.half_pitch - start)
             return np.where(fraction == 1, self.half_pitch, angle), np.full_like(angle, self.root_height)
         angle, height = self._flank(np.zeros(1))
-        tip = pinion.tip_half_angle(self.design)
+        tip = pinion.tip_half_angle(self.design, self.planes)
         return tip + fraction * (angle - tip), self.tip_height + fraction * (height - self.tip_height)
 
     def _flank(self, fraction: Array) -> tuple[Array, Array]:
@@ -154,7 +158,7 @@ class Outline:
         """
         u, v = self.flank_parameters(fraction)
         if self.body == "pinion":
-            radius, angle = pinion.involute_point(self.design, u)
+            radius, angle = pinion.involute_point(self.design, u, v)
             return angle, radius
         point = face_gear.flank_point(self.design, u, v)
         return np.arctan2(point[..., 0], point[..., 1]), point[..., 2]
