@@ -181,7 +181,7 @@ def unloaded_lines(
 
 def _min_roll(design: PairDesign) -> float:
     """Return the smallest roll angle, rad, of the involute: at the fillet, not below the base circle."""
-    return max(pinion.junction_roll(design), 0.0)
+    return max(float(pinion.junction_roll(design, design.middle)), 0.0)
 
 
 def _arc(design: PairDesign, roll: Array | float) -> Array:

@@ -380,7 +380,7 @@ def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
         Row, dimensionless, 0 at the tip edge.
     """
     design = surface.design
-    top, bottom = design.pinion_tip_roll, max(pinion.junction_roll(design), 0.0)
+    top, bottom = design.pinion_tip_roll, max(float(pinion.junction_roll(design, design.middle)), 0.0)
     height = design.pinion_base_radius * (top**2 - bottom**2) / 2
     rows = (surface.side.flank_rows - 1) * surface.lattice.refinement.profile
     return np.clip(to_pinion_tip / height, 0.0, 1.0) * rows

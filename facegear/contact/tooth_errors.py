@@ -133,7 +133,7 @@ def node_places(design: PairDesign, body: Body, side: ContactSide) -> tuple[Arra
     rows = side.flank_rows
     if body == "pinion":
         roll = side.u.copy()
-        roll[rows:] = pinion.junction_roll(design)
+        roll[rows:] = pinion.junction_roll(design, side.v[rows:])
         along, across = pinion.deviation_place(design, roll, side.v)
         return along.ravel(), across.ravel()
     points = face_gear.flank_point(design, side.u[:rows], side.v[:rows])
@@ -218,8 +218,8 @@ def _tip_edge_gaps(
     """
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
-    top, bottom = design.pinion_tip_roll**2, pinion.junction_roll(design) ** 2
     feet = tip_edge_feet(design, edge, placement, None, design.module)
+    top, bottom = pinion.tip_roll(design, feet.y) ** 2, pinion.junction_roll(design, feet.y) ** 2
     roll = np.sqrt(np.maximum(top - feet.flank * (top - bottom), 0.0))
     radii = np.broadcast_to(radius, roll.shape)
     return feet.gap, roll, feet.y, radii, np.zeros(roll.shape)

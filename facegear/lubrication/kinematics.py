@@ -159,13 +159,15 @@ def surface_normals(design: PairDesign, points: Array) -> Array:
     roll = np.sqrt(np.maximum((radius / design.pinion_base_radius) ** 2 - 1.0, 0.0))
     tangent = angle - np.arctan(roll)
     nx, nz = np.cos(tangent), np.sin(tangent)
-    end, _ = pinion.involute_point(design, max(pinion.junction_roll(design), 0.0))
+    end, _ = pinion.involute_point(
+        design, max(float(pinion.junction_roll(design, design.middle)), 0.0), design.middle
+    )
     below = radius < end * (1 - 1e-12)
     if below.any():
         gamma = np.linspace(design.pressure_angle, 0.5 * pi, FILLET_SAMPLES)
-        radii, _ = pinion.trochoid_point(design, gamma)
+        radii, _ = pinion.trochoid_point(design, gamma, design.middle)
         angles = np.interp(radius[below], radii[::-1], gamma[::-1])
-        nx[below], nz[below] = pinion.trochoid_normal(design, angles)
+        nx[below], _, nz[below] = pinion.trochoid_normal(design, angles, design.middle).T
     return np.stack([nx, np.zeros_like(nx), nz], axis=-1)
 
 

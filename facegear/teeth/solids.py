@@ -180,7 +180,7 @@ def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
     tip = flank[0][0]
     lands = []
     if part.tip_chamfer > 0:
-        corner = pinion.cartesian(design.pinion_tip_radius, pinion.tip_half_angle(design), y[0])
+        corner = pinion.cartesian(design.pinion_tip_radius, pinion.tip_half_angle(design, y[0]), y[0])
         lands = [_between(corner, tip, few)]
         tip = corner
     land = _arc(np.zeros(width), tip, few)
@@ -193,7 +193,7 @@ def _roll_bounds(design: PairDesign) -> list[float]:
     """Return the roll angles (rad), from tip to fillet, between which the pinion's flank has no kink by
     reliefs.
     """
-    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    top, bottom = design.pinion_tip_roll, float(pinion.junction_roll(design, design.middle))
 
     def kinks(relief: Relief) -> list[float]:
         """Return where a relief begins and ends, as roll angles (rad) from its end of the flank."""
