@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear.errors import ConfigError
 from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.teeth.face_bounds import FaceBounds, face_bounds, path_places, radius_at
+from facegear.teeth.face_bounds import FaceBounds, face_bounds, path_middles, pitch_line_radius
 from facegear.teeth.limits import THINNEST_LAND, FaceRange, face_range, radius_limits
 from facegear.teeth.validate import check_shaper
 
@@ -112,14 +112,14 @@ def face_limits(numbers: FaceNumbers) -> FaceRange | FaceBounds:
     teeth, fewest = design.shaper.teeth, design.pinion.teeth
     if not fewest <= teeth <= fewest + 3:
         raise ConfigError("shaper.teeth", teeth, f"from {fewest} (line contact) to {fewest + 3}")
-    place = float(np.mean(path_places(design.family)))
-    radius = float(radius_at(design.family, place))
-    placed = replace(
+    middle = float(np.mean(path_middles(design.family)))
+    radius = float(pitch_line_radius(design.family, middle))
+    design_with_face = replace(
         design,
-        pinion=replace(design.pinion, middle=place),
+        pinion=replace(design.pinion, middle=middle),
         face_gear=replace(design.face_gear, inner_radius=radius, outer_radius=radius),
     )
-    return face_bounds(placed.family, THINNEST_LAND * m)
+    return face_bounds(design_with_face.family, THINNEST_LAND * m)
 
 
 def _require_ranges(numbers: FaceNumbers) -> None:

@@ -32,13 +32,13 @@ FARTHEST = 1.6
 """Radius over that of the path up to which the outer limit is looked for."""
 ROUNDING = 1e-12
 """Absolute tolerance (m) of radii at which lands vanish."""
-SAME = 1e-12
+SAME_RADIUS = 1e-12
 """Relative difference of two radii that is rounding."""
 NO_LAND = -1.0
 """Width (m) that stands for a land where there is no flank."""
 
 
-def place_at(family: ToothFamily, radius: ArrayLike) -> Array:
+def pitch_line_y(family: ToothFamily, radius: ArrayLike) -> Array:
     """Compute where the pinion's pitch line, nearest to the gear, passes a gear radius.
 
     Parameters
@@ -59,14 +59,14 @@ def place_at(family: ToothFamily, radius: ArrayLike) -> Array:
     return (level + family.pinion_pitch_radius * motion.cosine) / motion.sine
 
 
-def radius_at(family: ToothFamily, place: ArrayLike) -> Array:
-    """Compute the gear radius at a place of the pinion's pitch line: the inverse of `place_at`.
+def pitch_line_radius(family: ToothFamily, y: ArrayLike) -> Array:
+    """Compute the gear radius at a place of the pinion's pitch line: the inverse of `pitch_line_y`.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
-    place : (...) array_like
+    y : (...) array_like
         Place y along the pinion's axis, m.
 
     Returns
@@ -75,11 +75,11 @@ def radius_at(family: ToothFamily, place: ArrayLike) -> Array:
         Gear radius, m.
     """
     motion = family.motion
-    level = np.asarray(place, float) * motion.sine - family.pinion_pitch_radius * motion.cosine
+    level = np.asarray(y, float) * motion.sine - family.pinion_pitch_radius * motion.cosine
     return np.hypot(family.offset, level)
 
 
-def path_places(family: ToothFamily) -> tuple[float, float]:
+def path_middles(family: ToothFamily) -> tuple[float, float]:
     """Compute where the paths of contact of both flanks meet the pinion's pitch line, without errors.
 
     Parameters
@@ -92,15 +92,15 @@ def path_places(family: ToothFamily) -> tuple[float, float]:
     tuple of float
         Places y along the pinion's axis of drive and coast flank, m.
     """
-    motion, places = family.motion, []
+    motion, middles = family.motion, []
     for side in SIDES:
         helicoid = gear_flank(family, side).shaper
         slope = helicoid.pressure_angle
         normal_x = side * helicoid.cosine * np.cos(slope)
         normal_y = helicoid.sine * motion.sine - helicoid.cosine * np.sin(slope) * motion.cosine
         level = family.gear_pitch_radius + family.offset * normal_y / normal_x
-        places.append(float((level + family.pinion_pitch_radius * motion.cosine) / motion.sine))
-    return places[0], places[1]
+        middles.append(float((level + family.pinion_pitch_radius * motion.cosine) / motion.sine))
+    return middles[0], middles[1]
 
 
 @dataclass(frozen=True)
@@ -171,9 +171,9 @@ def face_bounds(family: ToothFamily, thinnest: float, overhang: float = 0.0) -> 
     """
     limits = family_limits(family)
     inner, cause, side = limits.inner
-    if min(start.limit[0] for start in limits.starts) > inner * (1.0 - SAME):
+    if min(start.limit[0] for start in limits.starts) > inner * (1.0 - SAME_RADIUS):
         side = 0
-    path = float(radius_at(family, np.mean(path_places(family))))
+    path = float(pitch_line_radius(family, np.mean(path_middles(family))))
     radii = np.linspace(inner * (1.0 + 1e-9), max(FARTHEST * path, 1.01 * inner), SAMPLES)
     left = _land_left(family, radii, thinnest, overhang)
     is_sound = (np.stack(list(left.values())) > 0.0).all(axis=0)
@@ -201,7 +201,7 @@ def _vanishing(
     """
     thin, sound = ends
     left = _land_left(family, np.array([thin]), thinnest, overhang)
-    found = [
+    vanishing_radii = [
         (
             float(
                 brentq(
@@ -218,13 +218,13 @@ def _vanishing(
         for cause, margin in left.items()
         if margin[0] <= 0.0
     ]
-    return min(found, key=lambda limit: abs(limit[0] - sound))
+    return min(vanishing_radii, key=lambda limit: abs(limit[0] - sound))
 
 
 def _land_left(family: ToothFamily, radii: Array, thinnest: float, overhang: float) -> dict[str, Array]:
     """Return by cause the widths (m) of the lands at gear radii (n,) (m), less the thinnest permitted (m)."""
-    places = place_at(family, radii)
-    ends = [places - overhang, places + overhang]
+    y_middle = pitch_line_y(family, radii)
+    ends = [y_middle - overhang, y_middle + overhang]
     lands = {
         "pointed tips": tip_land(family, radii),
         "no root land": np.minimum(

@@ -8,7 +8,7 @@ import pytest
 from public_teeth import NAMES, public_design, public_numbers
 
 from facegear.teeth.bounded_contact import contact_path
-from facegear.teeth.face_bounds import REMEDIES, face_bounds, path_places, place_at, radius_at
+from facegear.teeth.face_bounds import REMEDIES, face_bounds, path_middles, pitch_line_radius, pitch_line_y
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import root_land
 from facegear.teeth.helicoid import shaper_land
@@ -42,7 +42,7 @@ def test_tapered_teeth_end_where_their_root_land_vanishes():
     family = public_design("P2")
     bounds = face_bounds(family, 0.0)
     assert bounds.outer_cause == "no root land"
-    lands = root_land(family, bounds.outer), shaper_land(family, place_at(family, bounds.outer))
+    lands = root_land(family, bounds.outer), shaper_land(family, pitch_line_y(family, bounds.outer))
     assert min(abs(land) for land in lands) < 1e-11
 
 
@@ -50,7 +50,7 @@ def test_tapered_teeth_end_where_their_root_land_vanishes():
 def test_place_and_radius_on_the_pitch_line_are_inverse(name):
     family = public_design(name)
     radius = np.linspace(family.inner_radius, family.outer_radius, 5)
-    assert radius_at(family, place_at(family, radius)) == pytest.approx(radius, rel=1e-14)
+    assert pitch_line_radius(family, pitch_line_y(family, radius)) == pytest.approx(radius, rel=1e-14)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -58,7 +58,7 @@ def test_the_path_meets_the_pitch_line_at_its_place(name):
     """The contact line of either flank passes the height of the pitch line there."""
     family = public_design(name)
     up = family.motion.basis[2]
-    for side, place in zip(SIDES, path_places(family), strict=True):
+    for side, place in zip(SIDES, path_middles(family), strict=True):
         line = contact_line(family, side)
         s = (-family.pinion_pitch_radius - line.foot @ up) / (line.normal @ up)
         assert line.point(s) @ family.motion.basis[1] == pytest.approx(place, abs=1e-15)
