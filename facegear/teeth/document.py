@@ -11,6 +11,7 @@ from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.analysis import PairAnalysis, path_curvatures
 from facegear.teeth.clearance import Gap, pinion_outline
 from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_numbers import blank_numbers, flank_numbers
 from facegear.teeth.placement import conjugate_angle
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
@@ -97,8 +98,8 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
 
 
 def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
-    """Return the content of `geometry/pair.json`: radii, limits, contact ratio and path, backlash, smallest
-    gaps.
+    """Return the content of `geometry/pair.json`: numbers of blanks and flanks, radii, limits, contact ratio
+    and path, backlash, smallest gaps.
 
     Parameters
     ----------
@@ -116,6 +117,8 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
     roll, large, small, slope = path_curvatures(design)
     return {
         "design_si": asdict(design),
+        "blanks": blank_numbers(design),
+        "flanks": flank_numbers(design),
         "radii_mm": {
             "pinion_base": 1e3 * design.pinion_base_radius,
             "pinion_pitch": 1e3 * design.pinion_pitch_radius,
