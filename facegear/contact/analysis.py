@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Integers
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.gear_flank import GearFlank, contact_model
+from facegear.contact.gear_flank import GearFlank, PairFlanks, contact_model, flank_models
 from facegear.contact.ltca import ContactModel, KnownContact, even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays, touching_reactions
 from facegear.contact.options import ContactPlan
@@ -18,7 +18,6 @@ from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
-from facegear.teeth.placement import distinct_pairs
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -199,14 +198,14 @@ class ContactAnalysis:
 def contact_analysis(
     design: PairDesign,
     materials: tuple[Material, Material],
-    flanks: tuple[GearFlank, GearFlank],
+    flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     every_flank: bool = True,
     known_contact: KnownContact | None = None,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
-    All pairs that differ in assembly errors and deviations are solved on the same compliances.
+    All pairs that differ in assembly errors and deviations alone are solved on the same compliances.
 
     Parameters
     ----------
@@ -214,8 +213,9 @@ def contact_analysis(
         Pair of gears.
     materials : tuple[Material, Material]
         Pinion and face gear.
-    flanks : tuple[GearFlank, GearFlank]
-        Surfaces and compliances of pinion and face gear.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`; the first
+        alone without `every_flank`.
     plan : ContactPlan
         Torques, positions and options.
     every_flank : bool
@@ -233,11 +233,9 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    model = contact_model(design, *flanks)
-    different, numbers = distinct_pairs(design)
+    models, numbers = flank_models(design, flanks)
     if not every_flank:
-        different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.of(pair_design) for pair_design in different]
+        models, numbers = models[:1], np.zeros_like(numbers)
     return ContactAnalysis(
         models, [_solve_model(pair_model, materials, plan, known_contact) for pair_model in models], numbers
     )

@@ -45,7 +45,7 @@ class KnownContact:
 
 
 def known_contact(
-    results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], base_radius: float
+    results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], normal_arm: float
 ) -> KnownContact | None:
     """Extract the rotation and the loaded nodes from results of a pair, to speed up a pair that differs
     little.
@@ -58,8 +58,8 @@ def known_contact(
         All positions, in pitches.
     shape : tuple[int, int]
         Refined lattice of the pinion.
-    base_radius : float
-        Of the pinion, m.
+    normal_arm : float
+        Torque on the pinion over the force along its flank's normal, m.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def known_contact(
     turn, is_loaded = np.zeros(len(positions)), np.zeros((len(positions), PAIRS.size, *shape), bool)
     for result in results:
         row = row_of[result.position]
-        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / base_radius)
+        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / normal_arm)
         for spot in result.spots:
             is_loaded[row, np.searchsorted(PAIRS, spot.tooth)].flat[spot.hats] = True
     if turn.min() <= 0.0:
@@ -225,7 +225,7 @@ def loaded_contact(
     design, face = model.design, model.design.face_gear
     phi1 = pinion_angle(design, positions)
     phi2, unloaded_error = unloaded_motion(design, phi1)
-    first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
+    first = first_turn(torques, design.normal_arm, face.outer_radius - face.inner_radius)
     progress = Progress("loaded contact", len(phi1))
     placements = list(zip(phi1.tolist(), phi2.tolist(), strict=True))
     position_search = _PositionSearch(model, options, placements, known_contact)
@@ -336,9 +336,9 @@ class _PairAtPosition:
     unloaded_error: float
 
     @property
-    def base_radius(self) -> float:
-        """Base radius of the pinion, m."""
-        return self.position_search.model.design.pinion_base_radius
+    def normal_arm(self) -> float:
+        """Torque on the pinion over the force along its flank's normal, m."""
+        return self.position_search.model.design.normal_arm
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact under `torques` (t,) N m, the largest first, of all that a rotation by

@@ -9,13 +9,14 @@ mirror, whose offset changes sign; what drives, turned half round, is the pinion
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import pi
+from math import hypot, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.flank_shapes import Flanks
 
 AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -1.0])}
 """Axes about which a positive turn moves the teeth in mesh towards +x, see `design`."""
@@ -183,6 +184,46 @@ def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
         rad.
     """
     return np.asarray(phi1, float) * design.pinion.teeth / design.face_gear.teeth
+
+
+def pitch_line_radius(design: PairDesign, y: float) -> float:
+    """Compute the gear radius at a place of the pitch line, which lies in the pinion's pitch cylinder.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : float
+        Place along the pinion's axis, m.
+
+    Returns
+    -------
+    float
+        m; y itself where axes cross at 90 degrees.
+    """
+    motion = design.family.motion
+    return hypot(y * motion.sine - design.pinion_pitch_radius * motion.cosine, design.offset)
+
+
+def common_face(design: PairDesign) -> tuple[float, float]:
+    """Compute the ends, along the pinion's axis, of the part of the pitch line that both faces cover.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float]
+        Inner and outer end y, m.
+    """
+    motion, face, half = design.family.motion, design.face_gear, design.pinion.width / 2
+    first, last = (
+        (sqrt(radius**2 - design.offset**2) + design.pinion_pitch_radius * motion.cosine) / motion.sine
+        for radius in (face.inner_radius, face.outer_radius)
+    )
+    return max(first, design.middle - half), min(last, design.middle + half)
 
 
 def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
@@ -391,3 +432,41 @@ def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
     pairs = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(pairs))
     return different, np.array([different.index(pair) for pair in pairs]).reshape(len(GEARS), len(FLANKS))
+
+
+def nominal_teeth(design: PairDesign) -> PairDesign:
+    """Return the pair without what moves no node of its bodies: errors of assembly and deviations of flanks.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    PairDesign
+        Pair by which bodies with the same nodes are known.
+    """
+    pinion, gear = design.pinion, design.face_gear
+    if pinion.flanks != Flanks() or gear.flanks != Flanks():
+        pinion, gear = replace(pinion, flanks=Flanks()), replace(gear, flanks=Flanks())
+    return replace(design, pinion=pinion, face_gear=gear, assembly=AssemblyErrors())
+
+
+def nominal_pairs(design: PairDesign) -> list[PairDesign]:
+    """Return the different pairs of bodies that both gears' both flanks need, the design's own first.
+
+    Teeth that are symmetric and meet two equal gears need one; the coast flanks of others are the drive
+    flanks of another pair, and so are those of a lower gear that differs from the upper one.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    list[PairDesign]
+        Pairs by `nominal_teeth`, in the order in which `distinct_pairs` needs them.
+    """
+    return list(dict.fromkeys(nominal_teeth(pair) for pair in distinct_pairs(design)[0]))
