@@ -11,13 +11,14 @@ from facegear.arrays import AnyArray, Integers
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.gear_flank import GearFlank, PairFlanks, contact_model, flank_models
 from facegear.contact.ltca import ContactModel, KnownContact, even_positions, loaded_contact
-from facegear.contact.nodal_loads import load_arrays, touching_reactions
+from facegear.contact.nodal_loads import load_arrays, touching_reactions, wrench_table
 from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
+from facegear.teeth.placement import GEARS
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -178,6 +179,14 @@ class ContactAnalysis:
         ]
 
     @cached_property
+    def wrenches(self) -> list[pd.DataFrame]:
+        """Force and moment of the pinion on the gear, by pair, columns WRENCH_COLUMNS of `nodal_loads`."""
+        return [
+            wrench_table(model.flanks.pinion, results)
+            for model, (results, _) in zip(self.models, self.results, strict=True)
+        ]
+
+    @cached_property
     def by_torque(self) -> list[pd.DataFrame]:
         """Summary of each pair's contact, one row a torque, columns COLUMNS of `summary` and
         `path_radius_mm`.
@@ -202,6 +211,7 @@ def contact_analysis(
     plan: ContactPlan,
     every_flank: bool = True,
     known_contact: KnownContact | None = None,
+    gears: Sequence[str] = GEARS,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
@@ -222,6 +232,8 @@ def contact_analysis(
         Whether all flanks are solved, not only the upper gear's drive flank.
     known_contact : KnownContact, optional
         Contact of a pair that differs little, with the same nodes and plan.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -233,7 +245,7 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    models, numbers = flank_models(design, flanks)
+    models, numbers = flank_models(design, flanks, gears)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
     return ContactAnalysis(

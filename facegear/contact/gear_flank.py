@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from facegear.errors import InvalidInput
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_quality import require_right_side_out
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.placement import distinct_pairs, nominal_pairs, nominal_teeth
+from facegear.teeth.placement import GEARS, distinct_pairs, nominal_pairs, nominal_teeth
 from facegear.teeth.tooth_mesh import FeTooth, gear_tooth, pinion_tooth
 
 
@@ -275,8 +276,17 @@ PairFlanks = tuple[GearFlank, GearFlank]
 """Flank of the pinion, and the flank of the face gear that it drives."""
 
 
+RIGHT_ANGLE = pi / 2
+"""Shaft angle (rad) of axes that cross at a right angle."""
+
+
 def gear_flanks(
-    design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
+    design: PairDesign,
+    body: str,
+    sizes: MeshSizes,
+    material: Material,
+    plan: ContactPlan,
+    gears: Sequence[str] = GEARS,
 ) -> list[GearFlank]:
     """Compute the flanks of a body in all pairs of bodies that both gears' both flanks need.
 
@@ -294,6 +304,8 @@ def gear_flanks(
         Of the body.
     plan : ContactPlan
         Refinement, sector and element.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -305,10 +317,22 @@ def gear_flanks(
     InvalidInput, FacegearError
         As `gear_flank` does.
     """
-    return [gear_flank(pair, body, sizes, material, plan) for pair in nominal_pairs(design)]
+    flanks: dict[PairDesign, GearFlank] = {}
+    keys = [_meshed(pair, body) for pair in nominal_pairs(design, gears)]
+    for key, pair in zip(keys, nominal_pairs(design, gears), strict=True):
+        if key not in flanks:
+            flanks[key] = gear_flank(pair, body, sizes, material, plan)
+    return [flanks[key] for key in keys]
 
 
-def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list[ContactModel], Integers]:
+def _meshed(pair: PairDesign, body: str) -> PairDesign:
+    """Return the pair as far as a body's mesh depends on it: a pinion's does not on how its axis stands."""
+    return replace(pair, shaft_angle=RIGHT_ANGLE, offset=0.0) if body == "pinion" else pair
+
+
+def flank_models(
+    design: PairDesign, flanks: Sequence[PairFlanks], gears: Sequence[str] = GEARS
+) -> tuple[list[ContactModel], Integers]:
     """Build the contact models of all flanks that differ, each on the bodies that it belongs to.
 
     Parameters
@@ -317,6 +341,8 @@ def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list
         Pair of gears.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
         Flanks of `placement.nominal_pairs`, in their order; models of missing ones are left out.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -324,7 +350,7 @@ def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list
         Models, that of the upper gear's drive flank first, and the number of the model of each gear's
         each flank, (2, 2), as `placement.distinct_pairs` returns it.
     """
-    different, numbers = distinct_pairs(design)
-    bodies = dict(zip(nominal_pairs(design), flanks, strict=False))
+    different, numbers = distinct_pairs(design, gears)
+    bodies = dict(zip(nominal_pairs(design, gears), flanks, strict=False))
     needed = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
     return [contact_model(pair, *of_pair) for pair, of_pair in needed if of_pair is not None], numbers

@@ -7,8 +7,8 @@ import numpy as np
 from facegear.arrays import Array, Arrays, Integers
 from facegear.quantities import BODIES
 from facegear.teeth.design import PairDesign
-from facegear.teeth.limits import radius_limits
-from facegear.teeth.placement import pinion_angle, pitch_line_radius, to_left_flank
+from facegear.teeth.limits import pitch_line_radius, radius_limits
+from facegear.teeth.placement import pinion_angle, to_left_flank
 
 SHARES = tuple(f"load_share_pair_{name}" for name in ("m2", "m1", "0", "p1", "p2"))
 """Load shares of the tooth pairs -2..2 (numbers as in `facegear.teeth.design`)."""

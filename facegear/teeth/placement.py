@@ -7,9 +7,10 @@ of a gear leads away from the pinion on either side. The back flank is the drive
 mirror, whose offset changes sign; what drives, turned half round, is the pinion's right flank again.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import hypot, pi, sqrt
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -184,46 +185,6 @@ def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
         rad.
     """
     return np.asarray(phi1, float) * design.pinion.teeth / design.face_gear.teeth
-
-
-def pitch_line_radius(design: PairDesign, y: float) -> float:
-    """Compute the gear radius at a place of the pitch line, which lies in the pinion's pitch cylinder.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-    y : float
-        Place along the pinion's axis, m.
-
-    Returns
-    -------
-    float
-        m; y itself where axes cross at 90 degrees.
-    """
-    motion = design.family.motion
-    return hypot(y * motion.sine - design.pinion_pitch_radius * motion.cosine, design.offset)
-
-
-def common_face(design: PairDesign) -> tuple[float, float]:
-    """Compute the ends, along the pinion's axis, of the part of the pitch line that both faces cover.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-
-    Returns
-    -------
-    tuple[float, float]
-        Inner and outer end y, m.
-    """
-    motion, face, half = design.family.motion, design.face_gear, design.pinion.width / 2
-    first, last = (
-        (sqrt(radius**2 - design.offset**2) + design.pinion_pitch_radius * motion.cosine) / motion.sine
-        for radius in (face.inner_radius, face.outer_radius)
-    )
-    return max(first, design.middle - half), min(last, design.middle + half)
 
 
 def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
@@ -416,20 +377,24 @@ def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
     return replace(drive_design, assembly=errors_at(design.assembly, gear, flank))
 
 
-def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
+def distinct_pairs(design: PairDesign, gears: Sequence[str] = GEARS) -> tuple[list[PairDesign], Integers]:
     """Return the pairs of both gears' both flanks without repetitions, so that each is computed once.
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`; a missing one has the pairs of the other.
 
     Returns
     -------
     tuple
-        The pairs, the design first, and the index of each flank's pair in them, (2, 2) by GEARS and FLANKS.
+        The pairs, those of the first gear first, and the index of each flank's pair in them, (2, 2) by GEARS
+        and FLANKS.
     """
-    pairs = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
+    present = [gear if gear in gears else gears[0] for gear in GEARS]
+    pairs = [pair_at(design, gear, flank) for gear in present for flank in FLANKS]
     different = list(dict.fromkeys(pairs))
     return different, np.array([different.index(pair) for pair in pairs]).reshape(len(GEARS), len(FLANKS))
 
@@ -453,7 +418,7 @@ def nominal_teeth(design: PairDesign) -> PairDesign:
     return replace(design, pinion=pinion, face_gear=gear, assembly=AssemblyErrors())
 
 
-def nominal_pairs(design: PairDesign) -> list[PairDesign]:
+def nominal_pairs(design: PairDesign, gears: Sequence[str] = GEARS) -> list[PairDesign]:
     """Return the different pairs of bodies that both gears' both flanks need, the design's own first.
 
     Teeth that are symmetric and meet two equal gears need one; the coast flanks of others are the drive
@@ -463,10 +428,12 @@ def nominal_pairs(design: PairDesign) -> list[PairDesign]:
     ----------
     design : PairDesign
         Pair of gears.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
     list[PairDesign]
         Pairs by `nominal_teeth`, in the order in which `distinct_pairs` needs them.
     """
-    return list(dict.fromkeys(nominal_teeth(pair) for pair in distinct_pairs(design)[0]))
+    return list(dict.fromkeys(nominal_teeth(pair) for pair in distinct_pairs(design, gears)[0]))

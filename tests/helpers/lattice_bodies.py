@@ -1,4 +1,4 @@
-"""Contact models without finite elements: lattices on exact flanks, with a foundation or half spaces below."""
+"""Contact models without finite elements: exact flanks on a foundation or on half spaces."""
 
 import numpy as np
 
@@ -34,7 +34,7 @@ def whole_flank(design: PairDesign, shape: tuple[int, int]) -> ContactSide:
 
 
 def patch(design: PairDesign, centre: tuple[float, float], step: tuple[float, float], shape) -> ContactSide:
-    """Return a patch of the pinion's flank about (transverse length of roll, y), m, with rows along generators.
+    """Return a patch of the pinion's flank about (transverse length of roll, y), m, rows along generators.
 
     `step`: distances (m) of nodes across generators and along them.
     """
