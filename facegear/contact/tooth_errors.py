@@ -23,9 +23,9 @@ from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_shapes import DeviationGrid
 from facegear.teeth.helicoid import pinion_start
+from facegear.teeth.limits import common_face
 from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
 from facegear.teeth.opposite import tip_edge_feet
-from facegear.teeth.limits import common_face
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.unloaded_contact import unloaded_motion
 
