@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Integers
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.gear_flank import GearFlank, PairFlanks, contact_model, flank_models
+from facegear.contact.gear_flank import GearFlank, PairFlanks, contact_model, flank_models, flanks_of
 from facegear.contact.ltca import ContactModel, KnownContact, even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays, touching_reactions, wrench_table
 from facegear.contact.options import ContactPlan
@@ -328,7 +328,7 @@ def posed_contacts(
 def met_contacts(
     design: PairDesign,
     materials: tuple[Material, Material],
-    flanks: tuple[GearFlank, GearFlank],
+    flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     pair_torques: Sequence[tuple[PairDesign, tuple[float, ...]]],
 ) -> Iterator[PosedContact]:
@@ -340,8 +340,8 @@ def met_contacts(
         Pair of gears that the flanks were made for.
     materials : tuple[Material, Material]
         Pinion and face gear.
-    flanks : tuple[GearFlank, GearFlank]
-        Surfaces and compliances of pinion and face gear.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`.
     plan : ContactPlan
         Positions and options; its torques are not used.
     pair_torques : Sequence[tuple[PairDesign, tuple[float, ...]]]
@@ -357,11 +357,9 @@ def met_contacts(
     NotConverged
         Names position and torque.
     """
-    model = contact_model(design, *flanks)
     for pair_design, torques in pair_torques:
-        yield _solve_assembly(
-            model.of(pair_design), pair_design.assembly, materials, replace(plan, torques=torques)
-        )
+        model = contact_model(pair_design, *flanks_of(pair_design, design, flanks))
+        yield _solve_assembly(model, pair_design.assembly, materials, replace(plan, torques=torques))
 
 
 def _solve_assembly(

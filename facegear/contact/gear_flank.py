@@ -354,3 +354,23 @@ def flank_models(
     bodies = dict(zip(nominal_pairs(design, gears), flanks, strict=False))
     needed = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
     return [contact_model(pair, *of_pair) for pair, of_pair in needed if of_pair is not None], numbers
+
+
+def flanks_of(pair: PairDesign, design: PairDesign, flanks: Sequence[PairFlanks]) -> PairFlanks:
+    """Return the flanks of a pair, one of those of a design in any assembly and with any deviations.
+
+    Parameters
+    ----------
+    pair : PairDesign
+        Pair by `placement.pair_at` of the design, maybe in another assembly.
+    design : PairDesign
+        Pair of gears.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Flanks of `placement.nominal_pairs` of the design.
+
+    Returns
+    -------
+    tuple[GearFlank, GearFlank]
+        Flank of the pinion, and the flank of the face gear that it drives.
+    """
+    return flanks[nominal_pairs(design).index(nominal_teeth(pair))]
