@@ -10,6 +10,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.basis_functions import FacingPairs
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
+from facegear.contact.lines import last_roll
 from facegear.contact.options import ContactOptions
 from facegear.contact.position import MARGIN, LoadedPosition, contact_at, first_turn, results_of
 from facegear.contact.position_solver import (
@@ -24,9 +25,11 @@ from facegear.contact.position_solver import (
     SearchStrip,
 )
 from facegear.contact.search import cover_of, facing_points
+from facegear.errors import InvalidInput
 from facegear.progress import Progress
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.helicoid import pinion_start
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
@@ -83,6 +86,33 @@ def known_contact(
 
 TOUCHING_GAP = 1e-9
 """Gap (m) of conjugate flanks below which they count as touching; off the path it grows by micrometres."""
+
+
+def check_overlap(design: PairDesign) -> None:
+    """Refuse a pair of which other pairs of teeth than PAIRS may touch while they pass through the mesh.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Raises
+    ------
+    InvalidInput
+        Where a tooth stays in mesh for too long a turn before or after the middle of its passage.
+    """
+    flank, half = design.family.pinion_flanks[0], design.pinion.width / 2
+    y = design.middle + np.array([-half, half])
+    rolls = np.stack([pinion_start(design.family, 1, y) / flank.base_radius, last_roll(design, y)])
+    # turn at which a place of the flank has the normal of the pitch line
+    turns = rolls + flank.lead / flank.base_radius * (y - flank.middle) - flank.pressure_angle - flank.phase
+    pitches = float(np.abs(turns).max()) * design.pinion.teeth / (2 * np.pi)
+    if pitches > PAIRS[-1] + 0.5:
+        raise InvalidInput(
+            "overlap of the teeth",
+            f"a tooth in mesh up to {pitches:.3g} pitches from its middle",
+            f"at most {PAIRS[-1] + 0.5:g}: a smaller helix angle or a narrower pinion is needed",
+        )
 
 
 def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> Integers:
@@ -220,9 +250,12 @@ def loaded_contact(
     ------
     NotConverged
         Names the position and the torque.
+    InvalidInput
+        As `check_overlap` does.
     """
     options = options or ContactOptions()
     design, face = model.design, model.design.face_gear
+    check_overlap(design)
     phi1 = pinion_angle(design, positions)
     phi2, unloaded_error = unloaded_motion(design, phi1)
     first = first_turn(torques, design.normal_arm, face.outer_radius - face.inner_radius)
