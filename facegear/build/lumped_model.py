@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Arrays
+from facegear.build.casing import machine_casing
 from facegear.build.machine_layout import ToothNumbers, layout, single_parts, stepped_shaft, torsional_spring
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
@@ -204,6 +205,7 @@ def machine(
     unloaded_error: Harmonics | None = None,
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
+    casing: Arrays | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -225,6 +227,8 @@ def machine(
     tables : tuple[FlankTables, ...] or None
         Force tables of the flanks at each gear, where mesh forces depend on the load; None for a force
         that is stiffness times compression.
+    casing : mapping of arrays or None
+        Arrays of stage casing; None to reduce the casing of the section here, where it has one.
 
     Returns
     -------
@@ -252,6 +256,7 @@ def machine(
         imperfections=flaws,
         forces=external_forces(section, shape),
         drive_line=drive_line(section, shape),
+        casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
     )

@@ -248,6 +248,8 @@ class MachineInputs:
         Arrays `surface` of stage pose_surface, where meshes stand in the loaded position of their bodies.
     bodies : mapping of arrays or None
         Arrays `reduced` of stage gear_bodies, where face gears bend.
+    casing : mapping of arrays or None
+        Arrays `reduced` of stage casing, where the machine stands on one.
     tooth_errors : mapping of arrays or None
         Arrays `curves` of stage tooth_errors, where single teeth deviate.
     """
@@ -260,6 +262,7 @@ class MachineInputs:
     law: Arrays | None = None
     poses: Arrays | None = None
     bodies: Arrays | None = None
+    casing: Arrays | None = None
     tooth_errors: Arrays | None = None
 
     @classmethod
@@ -325,7 +328,7 @@ class MachineInputs:
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
             series = stiffness_source.series_of(series)
-        lumped_machine = machine(self.transmission, self.teeth, series, error)
+        lumped_machine = machine(self.transmission, self.teeth, series, error, casing=self.casing)
         if self.law is not None:
             lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
         if self.bodies is not None:
