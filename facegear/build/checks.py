@@ -7,7 +7,7 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import KIND, ToothNumbers, layout
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
@@ -44,9 +44,10 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     Returns
     -------
     ToothNumbers
-        Tooth numbers, base radius (m) and pressure angle (rad).
+        Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    return ToothNumbers.of_config({key: getattr(pair, key) for key in TEETH})
+    sizes = {"pinion": {"middle_mm"}, "face_gear": {"inner_radius_mm", "outer_radius_mm"}}
+    return ToothNumbers.of_config(pair.model_dump(include=dict.fromkeys((*TEETH, *KIND), True) | sizes))
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:

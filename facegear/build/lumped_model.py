@@ -16,7 +16,7 @@ from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation
 from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
-from facegear.machine.layout import Layout, PhaseConvention, mesh_phases
+from facegear.machine.layout import Layout
 from facegear.machine.machine import (
     Damping,
     FlankTables,
@@ -25,9 +25,10 @@ from facegear.machine.machine import (
     balanced_torques,
     pinion_torques,
 )
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
-from facegear.schema.shafts import OUTPUT, TurningMassSection
+from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.schema.transmission import LIKE_ALL_MESHES, Transmission
 from facegear.schema.transmission_error import error_series
 
@@ -78,6 +79,7 @@ def imperfections(
         },
         position=1e-6
         * np.array([(single_part.position_um.x, single_part.position_um.y) for single_part in pinions]),
+        outwards=1e-6 * np.array([single_part.position_um.z for single_part in pinions]),
         bearing_clearance=1e-6 * np.array(clearances),
         clocking=np.array([single_part.clocking_deg for single_part in pinions]) / 360.0 * shape.pinion_teeth,
         pinion_runout=tuple(_runout(single_part.runout or section.pinion.runout) for single_part in pinions),
@@ -404,12 +406,23 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
+            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), _tilt_inertia(shape, number, shaft))
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
         masses[len(section.pinions) + shape.output] = _turning_masses(chain)
     return DriveLine(shape, seats, masses) if seats or masses else None
+
+
+def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
+    """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
+
+    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
+    half of that about its axis, as a thin disc.
+    """
+    if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
+        return 0.5 * shape.pinions[pinion].body.inertia
+    return shaft.tilt_inertia_kg_m2
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:

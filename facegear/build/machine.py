@@ -121,7 +121,7 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     NotConverged
         If the machine has no static equilibrium.
     """
-    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
+    torques = np.abs(machine.layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
     table_torques, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm

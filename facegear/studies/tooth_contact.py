@@ -106,7 +106,7 @@ class PairExcitation:
         """
         if self.answers is None:
             return {}
-        answers, torque = self.answers, force * self.numbers.pinion_base_radius
+        answers, torque = self.answers, force * self.numbers.pinion_arm
         return {
             ERROR_RANGE: 1e6 * answers.error_range,
             ERROR_HARMONIC: 1e6 * answers.error_harmonic,
@@ -221,7 +221,7 @@ def _answers(
     """
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
-    approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
+    approach = torque / numbers.pinion_arm / stiffness.at(torque, "average")
     error = 1e-6 * unloaded_samples(ltca) + approach
     roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
     return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)

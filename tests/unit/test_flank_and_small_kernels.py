@@ -12,6 +12,7 @@ from facegear.machine.block_statics import Springs
 from facegear.meshing.law import LinearHeld, LoadDependentHeld
 from facegear.teeth.rays import Blank, Shaper
 
+
 def make_blank():
     """A gear of ones."""
     sides, lines = ("flank", "back"), ("tip", "root", "middle")

@@ -67,9 +67,7 @@ def rays_of(design, rng):
     radial = np.stack([np.sin(angle), 0.0 * angle, -np.cos(angle)], axis=-1)
     from_axis = (design.pinion_tip_radius - 0.3 * design.module) * radial
     from_axis[:, 1] = rng.uniform(*ends, 100)
-    return SurfacePoints(
-        np.concatenate([flank.position, from_axis]), np.concatenate([flank.normal, radial])
-    )
+    return SurfacePoints(np.concatenate([flank.position, from_axis]), np.concatenate([flank.normal, radial]))
 
 
 def placements(design):
@@ -160,12 +158,13 @@ def test_flanks_touch_along_the_contact_line_and_nowhere_deeper(case, side):
 def changed(family, key, step):
     """Return a family with a small helix, taper, offset (5 mm at 1 rad), shaft angle or asymmetry."""
     rack, angles = family.rack, family.rack.pressure_angles
+    unlike = replace(rack, pressure_angles=(angles[0] + step, angles[1]))
     return {
         "helix": lambda: replace(family, rack=replace(rack, helix_angle=step)),
         "taper": lambda: replace(family, rack=replace(rack, taper_angle=step)),
         "offset": lambda: replace(family, offset=0.005 * step),
         "shaft angle": lambda: replace(family, shaft_angle=pi / 2 + step),
-        "asymmetry": lambda: replace(family, rack=replace(rack, pressure_angles=(angles[0] + step, angles[1]))),
+        "asymmetry": lambda: replace(family, rack=unlike),
     }[key]()
 
 
