@@ -9,7 +9,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.build.machine_layout import ToothNumbers, layout, single_parts, stepped_shaft, torsional_spring
+from facegear.build.machine_layout import (
+    ToothNumbers,
+    layout,
+    nominal_force,
+    single_parts,
+    stepped_shaft,
+    torsional_spring,
+)
+from facegear.build.rolling import nominal_state, rolling_shaft
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation
@@ -24,9 +32,10 @@ from facegear.machine.machine import (
     balanced_torques,
     pinion_torques,
 )
+from facegear.machine.mean_load import rolling_seat
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
-from facegear.schema.shafts import OUTPUT, TurningMassSection
+from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.schema.transmission import LIKE_ALL_MESHES, Transmission
 from facegear.schema.transmission_error import error_series
 
@@ -399,12 +408,19 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
+            seats[number] = _seat(shaft, nominal_force(section, shape.pinion_radius))
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
         masses[len(section.pinions) + shape.output] = _turning_masses(chain)
     return DriveLine(shape, seats, masses) if seats or masses else None
+
+
+def _seat(shaft: ShaftSection, force: float) -> Seat:
+    """Return the seat on a shaft; `force`, N, is that at which rolling bearings are taken."""
+    if shaft.is_rolling:
+        return rolling_seat(rolling_shaft(shaft), nominal_state(shaft, force), shaft.tilt_inertia_kg_m2)
+    return Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:

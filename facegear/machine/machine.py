@@ -22,6 +22,7 @@ from facegear.machine.drive_line import DriveLine
 from facegear.machine.imperfections import Imperfections, perfect
 from facegear.machine.layout import Layout, PhaseConvention, Role, mesh_phases
 from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
+from facegear.machine.supports import add_tangents
 from facegear.meshing.force_table import ForceTable
 from facegear.meshing.law import MeshLaw
 from facegear.number_format import count_noun
@@ -167,16 +168,16 @@ class Machine:
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Linear model of the whole machine, computed once: `lumped_model`, extended by the drive line,
-        then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates are
-        the layout's.
+        """Linear model of the whole machine, the tangents of its rolling bearings included."""
+        return add_tangents(self.linear_without_rolling, self.drive_line)
+
+    @cached_property
+    def linear_without_rolling(self) -> LinearModel:
+        """Linear model without rolling bearings: `lumped_model`, then drive line, `bodies` (gears that bend)
+        and `directions`, each if given, whose coordinates stand behind the layout's.
         """
         model = self.lumped_model
-        for add_part in (
-            self.drive_line,
-            self.bodies,
-            self.directions,
-        ):
+        for add_part in (self.drive_line, self.bodies, self.directions):
             model = model if add_part is None else add_part(model)
         return model
 

@@ -32,7 +32,7 @@ MAY_IMPORT = {
     "contact": {"teeth", "meshing", "sparse"},
     "parts": {"teeth", "sparse", "contact"},
     "bearings": {"parts"},
-    "machine": {"teeth", "meshing", "parts"},
+    "machine": {"teeth", "meshing", "parts", "bearings"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
     "strength": {"teeth", "contact", "machine", "motion", "sharing"},
