@@ -10,7 +10,15 @@ import numpy as np
 
 from facegear.arrays import Array, Arrays
 from facegear.build.casing import machine_casing
-from facegear.build.machine_layout import ToothNumbers, layout, single_parts, stepped_shaft, torsional_spring
+from facegear.build.machine_layout import (
+    ToothNumbers,
+    layout,
+    nominal_force,
+    single_parts,
+    stepped_shaft,
+    torsional_spring,
+)
+from facegear.build.rolling import nominal_state, rolling_shaft
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation
@@ -25,6 +33,7 @@ from facegear.machine.machine import (
     balanced_torques,
     pinion_torques,
 )
+from facegear.machine.mean_load import rolling_seat
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
@@ -406,7 +415,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), _tilt_inertia(shape, number, shaft))
+            tilt_inertia = _tilt_inertia(shape, number, shaft)
+            seats[number] = _seat(shaft, nominal_force(section, shape.pinion_radius), tilt_inertia)
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
@@ -423,6 +433,15 @@ def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | No
     if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
         return 0.5 * shape.pinions[pinion].body.inertia
     return shaft.tilt_inertia_kg_m2
+
+
+def _seat(shaft: ShaftSection, force: float, tilt_inertia: float | None) -> Seat:
+    """Return the seat of a pinion with a moment of inertia about a diameter, kg m2, None without tilts;
+    `force`, N, is that at which rolling bearings are taken.
+    """
+    if shaft.is_rolling:
+        return rolling_seat(rolling_shaft(shaft), nominal_state(shaft, force), tilt_inertia)
+    return Seat(condense_shaft(stepped_shaft(shaft)), tilt_inertia)
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:

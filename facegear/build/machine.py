@@ -20,6 +20,7 @@ from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.imperfections import from_arrays
 from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import FlankTables, Machine
+from facegear.machine.mean_load import at_mean_load
 from facegear.machine.poses.fixed_point import posed_machine
 from facegear.machine.poses.surface import PoseSurface
 from facegear.machine.static_gears import at_rest
@@ -312,8 +313,8 @@ class MachineInputs:
         Returns
         -------
         Machine
-            The lumped machine with mesh law, elastic gears, errors of single teeth, poses and friction,
-            added in this order as far as the inputs hold them.
+            The lumped machine with mesh law, elastic gears, errors of single teeth, poses, tangents of
+            rolling bearings and friction, added in this order as far as the inputs hold them.
 
         Raises
         ------
@@ -340,6 +341,7 @@ class MachineInputs:
         # Friction acts where the loaded bodies stand, so poses come first.
         if self.poses is not None:
             lumped_machine = posed_machine(lumped_machine, PoseSurface.of_arrays(self.poses))
+        lumped_machine = at_mean_load(lumped_machine)
         return lumped_machine if self.friction is None else with_friction(lumped_machine, self.friction)
 
 

@@ -190,7 +190,7 @@ def _side(family: ToothFamily, sample: FlankSample) -> Side:
 
 
 def _flank_sample(family: ToothFamily) -> FlankSample:
-    """Sample the right flank of a family's gear on SAMPLES x SAMPLES points, gear radius by height, from which
+    """Sample the right flank of a family's gear on SAMPLES x SAMPLES points, gear radius by height, where
     searches along rays begin.
     """
     flank, fillet = gear_flank(family, RIGHT), gear_fillet(family, RIGHT)

@@ -4,7 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.teeth.design import PairDesign
-from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line
+from facegear.teeth.family_contact import ContactLine, contact_line
 from facegear.teeth.helicoid import PinionFlank
 from facegear.teeth.surfaces import SurfacePoints
 
@@ -21,7 +21,7 @@ def pinion_points(design: PairDesign, length: Array, y: Array) -> SurfacePoints:
 def unloaded_line(design: PairDesign) -> ContactLine | None:
     """Return the line on which the drive flanks of a design touch as assembled."""
     errors = design.assembly
-    return contact_line(design.family, 1, PinionPose(errors, errors.pinion_axial))
+    return contact_line(design.family, 1, errors)
 
 
 def contact_angles(line: ContactLine, s: Array) -> tuple[Array, Array, Array, Array]:
