@@ -50,8 +50,7 @@ def shafts_figures(
     shaft_sections = {name: section for name, section in sections.items() if section is not None}
     if not shaft_sections:
         return []
-    radius = 1e3 * teeth.pinion_base_radius / np.cos(teeth.pressure_angle)
-    return [shafts_figure(shaft_sections, bearings, deflections, float(radius), width_mm)]
+    return [shafts_figure(shaft_sections, bearings, deflections, 1e3 * teeth.pitch_radius, width_mm)]
 
 
 def shafts_figure(
