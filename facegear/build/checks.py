@@ -18,7 +18,7 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.unloaded_contact import normal_backlash
+from facegear.teeth.unloaded_contact import gear_backlash, normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -45,7 +45,7 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     ToothNumbers
         Tooth numbers, base radius (m) and pressure angle (rad).
     """
-    return ToothNumbers.of_teeth(*(getattr(pair, key) for key in TEETH))
+    return ToothNumbers.of_config({key: getattr(pair, key) for key in TEETH})
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
@@ -307,9 +307,11 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    assembly = pair.assembly.model_dump()
+    assembly, design = pair.assembly.model_dump(), pair_design(pair)
     try:
-        backlash = normal_backlash(pair_design(pair), tuple(beside))
+        backlash = (
+            normal_backlash(design, tuple(beside)) if design.is_spur else _normal_backlash_of_family(design)
+        )
     except NotConverged:
         raise ConfigError(
             "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
@@ -324,6 +326,15 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
             "tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, requirement
         )
     return 1e6 * max(backlash, 0.0)
+
+
+def _normal_backlash_of_family(design: PairDesign) -> float:
+    """Return the backlash (m) of unmodified flanks as assembled, along the drive flank's normal."""
+    arc = gear_backlash(design.family, design.assembly)
+    if arc is None:
+        attempts = "no normal of the gear touches the pinion's base cylinder"
+        raise NotConverged("backlash", "the assembly", attempts)
+    return arc / design.family.gear_pitch_radius * design.gear_normal_arm
 
 
 def memory_here() -> float:

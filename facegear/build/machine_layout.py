@@ -22,9 +22,9 @@ from facegear.schema.bodies import (
     SinglePinion,
     TiltSection,
 )
-from facegear.schema.changes import TEETH
 from facegear.schema.gear_body import MaterialSection
 from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
+from facegear.schema.tooth_pair import flank_angles_deg
 from facegear.schema.transmission import PinionPlace, Transmission
 from facegear.sharing.groups import load_groups, split_groups
 
@@ -52,7 +52,8 @@ class ToothNumbers:
         Self
             Tooth numbers in SI units.
         """
-        return cls.of_teeth(*(values[key] for key in TEETH))
+        numbers = {key: values[key] for key in ("pinion_teeth", "face_gear_teeth", "module_mm")}
+        return cls.of_teeth(**numbers, pressure_angle_deg=flank_angles_deg(values["pressure_angle_deg"])[0])
 
     @classmethod
     def of_teeth(
