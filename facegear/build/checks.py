@@ -7,7 +7,8 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import KIND, ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
@@ -18,7 +19,8 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.unloaded_contact import normal_backlash
+from facegear.teeth.family_contact import PinionPose
+from facegear.teeth.unloaded_contact import gear_backlash, normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -45,8 +47,8 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     ToothNumbers
         Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    sizes = {"pinion": {"middle_mm"}, "face_gear": {"inner_radius_mm", "outer_radius_mm"}}
-    return ToothNumbers.of_config(pair.model_dump(include=dict.fromkeys((*TEETH, *KIND), True) | sizes))
+    bodies = {"pinion": {"middle_mm"}, "face_gear": {"inner_radius_mm", "outer_radius_mm"}}
+    return ToothNumbers.of_config(pair.model_dump(include=dict.fromkeys(TEETH, True) | bodies))
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
@@ -308,9 +310,11 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    assembly = pair.assembly.model_dump()
+    assembly, design = pair.assembly.model_dump(), pair_design(pair)
     try:
-        backlash = normal_backlash(pair_design(pair), tuple(beside))
+        backlash = (
+            normal_backlash(design, tuple(beside)) if design.is_spur else _normal_backlash_of_family(design)
+        )
     except NotConverged:
         raise ConfigError(
             "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
@@ -325,6 +329,15 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
             "tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, requirement
         )
     return 1e6 * max(backlash, 0.0)
+
+
+def _normal_backlash_of_family(design: PairDesign) -> float:
+    """Return the backlash (m) of unmodified flanks as assembled, along the drive flank's normal."""
+    arc = gear_backlash(design.family, PinionPose(design.assembly, design.assembly.pinion_axial))
+    if arc is None:
+        attempts = "no normal of the gear touches the pinion's base cylinder"
+        raise NotConverged("backlash", "the assembly", attempts)
+    return arc / design.family.gear_pitch_radius * design.gear_normal_arm
 
 
 def memory_here() -> float:

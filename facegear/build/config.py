@@ -24,6 +24,7 @@ from facegear.build.checks import (
     with_backlash,
 )
 from facegear.build.elastic_bodies import check_bodies, elastic_gears
+from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
@@ -183,7 +184,8 @@ class Config(Section):
         elif self.mesh_stiffness.source != "harmonics":
             requirement = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, requirement)
-        if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
+        has_contact = self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication
+        if has_contact and not refused_keys(["contact"], pair.model_dump()):
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             contact = self.contact_used

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.lumped_model import machine
 from facegear.build.machine_layout import lumped_sections
 from facegear.build.strength import rating_request
@@ -202,7 +203,7 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
     EarlyFindings
         Failures, remarks, and one line of facts; no lines for a pair without bodies.
     """
-    if values["tooth_pair"]["pinion"] is None:
+    if values["tooth_pair"]["pinion"] is None or refused_keys(["geometry"], values["tooth_pair"]):
         return EarlyFindings((), (), ())
     design = pair_design(ToothPair.of_config(values["tooth_pair"]))
     try:
@@ -249,7 +250,7 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
     EarlyFindings
         Remarks only; no lines for a config without a machine.
     """
-    if values["transmission"] is None:
+    if values["transmission"] is None or refused_keys(["ratings"], values["tooth_pair"]):
         return EarlyFindings((), (), ())
     section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
     stiffness = Harmonics(np.zeros(1), np.array([_stiffness(values)]))
@@ -291,7 +292,7 @@ def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], l
     A failure is the error by which the rating would end. A remark tells of a notch parameter q_s of the
     pinion's fillet outside NOTCHES, the range of ISO 6336-3. Both are empty without section `strength`.
     """
-    if values["strength"] is None:
+    if values["strength"] is None or refused_keys(["rating"], values["tooth_pair"]):
         return [], []
     ratio = section_contact_ratio(design)
     try:

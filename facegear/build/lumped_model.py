@@ -9,7 +9,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.build.machine_layout import ToothNumbers, layout, single_parts, stepped_shaft, torsional_spring
+from facegear.build.machine_layout import layout, single_parts, stepped_shaft, torsional_spring
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation

@@ -11,6 +11,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.by_content import kept_by_content
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
+from facegear.machine.casing import Casing
 from facegear.machine.disturbances import (
     Excitation,
     MeshFriction,
@@ -117,6 +118,8 @@ class Machine:
         `loaded_modes.machine_in_motion` has attached coordinates for the rest.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
+    casing
+        Casing that gives way below bearings; None for seats that stand still.
     directions
         Function that turns the forces of the meshes away from the normals of the ideal contact; none by
         default.
@@ -140,6 +143,7 @@ class Machine:
     bodies: Bodies | None = None
     softening: Array | None = None
     drive_line: DriveLine | None = None
+    casing: Casing | None = None
     directions: Bodies | None = None
     excitations: tuple[Excitation, ...] = ()
 
@@ -169,15 +173,13 @@ class Machine:
     @cached_property
     def linear(self) -> LinearModel:
         """Linear model of the whole machine, computed once: `lumped_model`, extended by the drive line,
-        then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates are
-        the layout's.
+        then by the casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first
+        coordinates are the layout's.
         """
-        model = self.lumped_model
-        for add_part in (
-            self.drive_line,
-            self.bodies,
-            self.directions,
-        ):
+        model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
+        if self.casing is not None:
+            model = self.casing(model, self.drive_line)
+        for add_part in (self.bodies, self.directions):
             model = model if add_part is None else add_part(model)
         return model
 
@@ -217,7 +219,7 @@ class Machine:
         with it from those without it; else this machine.
         """
         line = self.drive_line
-        if line is None or not line.static_from_layout(self.lumped_model):
+        if line is None or self.casing is not None or not line.static_from_layout(self.lumped_model):
             return self
         return replace(self, drive_line=None)
 

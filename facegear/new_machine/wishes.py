@@ -23,6 +23,11 @@ class ToothWishes:
     face_gear_teeth: int
     module_mm: float
     pressure_angle_deg: float = 25.0
+    coast_pressure_angle_deg: float | None = None
+    helix_angle_deg: float = 0.0
+    taper_angle_deg: float = 0.0
+    shaft_angle_deg: float = 90.0
+    offset_mm: float = 0.0
     profile_shift_modules: float | None = None
     pinion_addendum_modules: float | None = None
     pinion_dedendum_modules: float | None = None

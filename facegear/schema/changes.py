@@ -14,7 +14,10 @@ PAIR = "tooth_pair."
 """Beginning of the keys of the tooth pair."""
 LUBRICATION = "lubrication."
 """Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
-TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+TEETH = (
+    *("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg"),
+    *("helix_angle_deg", "taper_angle_deg", "shaft_angle_deg", "offset_mm"),
+)
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = (
     "assembly",

@@ -4,12 +4,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
 from facegear.teeth.generated_flank import gear_flank
 from facegear.teeth.limits import sharpest_fillet_radius
 from facegear.teeth.modifications import added_curvatures, derivative
 from facegear.teeth.tooth_family import stack_vectors, turn_about_axis
+from facegear.teeth.tooth_sides import GearSide, PinionSide
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
@@ -137,13 +138,16 @@ def _principal(
 
 SAMPLES = 401
 """Points of a section, evenly in its parameter."""
+RADII = 9
+"""Sections of a gear whose sharpest fillet has no closed form; the ends are sharpest on most faces."""
 
 
 def smallest_radius(design: PairDesign, body: str) -> float:
     """Compute the smallest radius of curvature of the pinion's fillet section, or of the gear's over its
     face.
 
-    It is taken from sampled points; the gear's sections are at both ends and where the fillet is sharpest.
+    It is taken from sampled points of both sides' fillets; the gear's sections are at both ends and where the
+    fillet is sharpest, or evenly over the face of teeth that are not spur.
 
     Parameters
     ----------
@@ -157,17 +161,23 @@ def smallest_radius(design: PairDesign, body: str) -> float:
     float
         m.
     """
-    if body == "pinion":
-        gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
-        radius, angle = pinion.trochoid_point(design, gamma)
-        return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
-    ends = design.face_gear.inner_radius, design.face_gear.outer_radius
-    radii = []
-    for gear_radius in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
-        slopes = face_gear_fillet.fillet_slopes(design, gear_radius, np.linspace(0.0, 1.0, SAMPLES))
-        angle, z = face_gear_fillet.fillet_section(design, gear_radius, slopes)
-        radii.append(_sharpest(gear_radius * angle, z))
-    return min(radii)
+    families = (design.family,) if design.is_symmetric else (design.family, design.mirror_family)
+    parts, radii = np.linspace(0.0, 1.0, SAMPLES), []
+    for family in families:
+        if body == "pinion":
+            ends = design.middle + design.pinion.width / 2 * np.array([-1.0, 1.0])
+            planes = ends if design.taper_angle else np.array([design.middle])
+            angle, radius = PinionSide(family, planes).fillet_section(parts)
+            across, height = radius * np.sin(angle), radius * np.cos(angle)
+        else:
+            face = design.face_gear.inner_radius, design.face_gear.outer_radius
+            sharpest = np.clip(sharpest_fillet_radius(design), *face)
+            planes = np.array([*face, sharpest]) if design.is_spur else np.linspace(*face, RADII)
+            angle, height = GearSide(family, planes).fillet_section(parts)
+            across = planes * angle
+        radii += [_sharpest(*plane) for plane in zip(across.T, height.T, strict=True)]
+    # points coincide in the corner that a sharp edge leaves at one radius, where there is no number
+    return float(np.nanmin(radii))
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
@@ -175,5 +185,6 @@ def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
     out.
     """
     dx, dz = np.gradient(x), np.gradient(z)
-    bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
+    with np.errstate(invalid="ignore"):
+        bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
     return float(1.0 / bend[2:-2].max())

@@ -32,14 +32,15 @@ MAY_IMPORT = {
     "contact": {"teeth", "meshing", "sparse"},
     "parts": {"teeth", "sparse", "contact"},
     "bearings": {"parts"},
-    "machine": {"teeth", "meshing", "parts"},
+    "casing": set(),
+    "machine": {"teeth", "meshing", "parts", "casing"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
     "strength": {"teeth", "contact", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
-        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion", "sharing"),
-        *("strength", "lubrication"),
+        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "casing", "machine", "motion"),
+        *("sharing", "strength", "lubrication"),
     },
     "exchange": {"schema", "build", "teeth", "meshing", "machine", "motion"},
     "studies": {
@@ -51,8 +52,8 @@ MAY_IMPORT = {
     },
     "report": {"schema", "build", "teeth", "meshing", "contact", "machine", "motion", "sharing"},
     "pipeline": {
-        *("schema", "build", "teeth", "meshing", "contact", "parts", "machine", "motion", "sharing"),
-        *("strength", "lubrication", "studies", "exchange", "report"),
+        *("schema", "build", "teeth", "meshing", "contact", "parts", "casing", "machine", "motion"),
+        *("sharing", "strength", "lubrication", "studies", "exchange", "report"),
     },
     "door": {"schema", "build", "machine", "exchange", "studies", "pipeline"},
 }
