@@ -19,7 +19,6 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.family_contact import PinionPose
 from facegear.teeth.unloaded_contact import gear_backlash, normal_backlash
 
 JAM = 1e-8
@@ -333,7 +332,7 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
 
 def _normal_backlash_of_family(design: PairDesign) -> float:
     """Return the backlash (m) of unmodified flanks as assembled, along the drive flank's normal."""
-    arc = gear_backlash(design.family, PinionPose(design.assembly, design.assembly.pinion_axial))
+    arc = gear_backlash(design.family, design.assembly)
     if arc is None:
         attempts = "no normal of the gear touches the pinion's base cylinder"
         raise NotConverged("backlash", "the assembly", attempts)

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from facegear.build.rolling import nominal_state
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
+from facegear.machine.mean_load import body_on_tangent
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.schema.bodies import (
     LIKE_ALL_GEARS,
@@ -26,6 +28,9 @@ from facegear.schema.gear_body import MaterialSection
 from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
 from facegear.schema.transmission import PinionPlace, Transmission
 from facegear.sharing.groups import load_groups, split_groups
+
+LEAST_FORCE = 100.0
+"""Force at which the rolling bearings of a machine without torque are taken at first, N."""
 
 
 def lumped_sections(
@@ -110,7 +115,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
                 pinion.name,
                 Role(pinion.role),
                 _pitches(pinion, teeth.gear_teeth),
-                _pinion_body(section, pinion),
+                _pinion_body(section, pinion, pinion_radius),
             )
             for pinion in section.pinions
         ),
@@ -150,19 +155,41 @@ def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinio
     )
 
 
-def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
+def _pinion_body(section: Transmission, pinion: PinionPlace, radius: float) -> Body:
     """Return mass, inertia and bearing stiffness of a pinion, on its own bearings or on its shaft.
 
     With a shaft the stiffness is the inverse of the shaft's compliance at the pinion, for forces without
-    moment, x and y coupled.
+    moment, x and y coupled. Rolling bearings are taken at `nominal_force`; `radius`: base radius, m.
     """
     single_pinion = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
         return _body(section.pinion, single_pinion)
+    if shaft.is_rolling:
+        state = nominal_state(shaft, nominal_force(section, radius))
+        return body_on_tangent(Body(*_inertias(section.pinion, single_pinion), (0.0, 0.0, 0.0)), state)
     compliance = condense_shaft(stepped_shaft(shaft)).compliance
     (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
     mass, inertia = _inertias(section.pinion, single_pinion)
     return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)
+
+
+def nominal_force(section: Transmission, radius: float) -> float:
+    """Return the force at which rolling bearings are taken before a machine's statics are known.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    radius : float
+        Base radius of the pinions, m.
+
+    Returns
+    -------
+    float
+        Largest torque of a pinion over the base radius, N, at least LEAST_FORCE.
+    """
+    torques = [section.torque.per_input_n_m, *(pinion.torque_n_m or 0.0 for pinion in section.pinions)]
+    return max(LEAST_FORCE, max(abs(torque) for torque in torques) / radius)
 
 
 def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None) -> Body:

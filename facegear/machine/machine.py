@@ -24,6 +24,7 @@ from facegear.machine.imperfections import Imperfections, perfect
 from facegear.machine.layout import Layout, Role
 from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.supports import add_tangents
 from facegear.meshing.force_table import ForceTable
 from facegear.meshing.law import MeshLaw
 from facegear.number_format import count_noun
@@ -172,9 +173,14 @@ class Machine:
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Linear model of the whole machine, computed once: `lumped_model`, extended by the drive line,
-        then by the casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first
-        coordinates are the layout's.
+        """Linear model of the whole machine, the tangents of its rolling bearings included."""
+        return add_tangents(self.linear_without_rolling, self.drive_line)
+
+    @cached_property
+    def linear_without_rolling(self) -> LinearModel:
+        """Linear model without rolling bearings: `lumped_model`, extended by the drive line, then by the
+        casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates
+        are the layout's.
         """
         model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
         if self.casing is not None:

@@ -410,7 +410,8 @@ def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFr
     names, forces, rows = list(run.machine.layout.body_names), run.bearings, []
     if line is not None:
         names += [f"{names[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
-        forces = np.concatenate([forces, shaft_bearing_loads(line, forces)[..., :3]], axis=1)
+        on_bearings = shaft_bearing_loads(line, forces, shafts=run.at_rest.shafts)[..., :3]
+        forces = np.concatenate([forces, on_bearings], axis=1)
     for name, force in zip(names, forces.transpose(1, 0, 2), strict=True):
         radial = np.hypot(force[:, 0], force[:, 1])
         rows.append((name, *force.mean(axis=0), radial.mean(), radial.max(), np.abs(force[:, 2]).max()))

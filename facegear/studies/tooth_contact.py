@@ -162,13 +162,13 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         try:
             compliances, _ = bodies(pair["tooth_pair"], section)
             analysis = contact_analysis(
-                pair_design(section), materials(section), compliances, plan, every_flank=False
+                pair_design(section), materials(section), [compliances], plan, every_flank=False
             )
         except FacegearError:
             return None
-        flanks_of_it, base_radius = analysis.models[0].flanks, analysis.models[0].design.pinion_base_radius
+        flanks_of_it, normal_arm = analysis.models[0].flanks, analysis.models[0].design.normal_arm
         positions = even_positions(plan.positions)
-        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, normal_arm)
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
@@ -183,7 +183,7 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         analysis = contact_analysis(
             pair_design(section),
             materials(section),
-            compliances,
+            [compliances],
             plan,
             every_flank=False,
             known_contact=start_contact,

@@ -7,7 +7,7 @@ from scipy import sparse
 
 from facegear.casing.reduction import Interface
 from facegear.casing.whole import whole_casing
-from facegear.io.matrices.labelled import Labelled
+from facegear.io.matrices.labelled_matrix import LabelledMatrix
 
 CORNERS = np.array(list(itertools.product((-1, 1), repeat=3)))
 EDGES = np.array([place for place in itertools.product((-1, 0, 1), repeat=3) if place.count(0) == 1])
@@ -74,8 +74,8 @@ def brick(size, young, poisson, density):
 
 
 def box_matrices(cubes, size=20.0, young=70e3, poisson=0.33, density=2.7e-9):
-    """Labelled K and M of a box of cubes with walls one cube thick, and its nodes: numbers, (n, 3) mm about
-    its middle.
+    """LabelledMatrix K and M of a box of cubes with walls one cube thick, and its nodes: numbers, (n, 3) mm
+    about its middle.
     """
     elements = [
         place
@@ -95,7 +95,7 @@ def box_matrices(cubes, size=20.0, young=70e3, poisson=0.33, density=2.7e-9):
     numbers = np.arange(1, len(unique) + 1)
     node, direction = np.repeat(numbers, 3), np.tile([1, 2, 3], len(unique))
     places = 0.5 * size * (unique - np.array(cubes))
-    return *(Labelled(node, direction, matrix) for matrix in matrices), (numbers, places)
+    return *(LabelledMatrix(node, direction, matrix) for matrix in matrices), (numbers, places)
 
 
 def nodes_in(places, low, high):

@@ -35,10 +35,12 @@ MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 """Mesh stiffness, and the mesh law where the config asks for it."""
 HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
-BODIES = {
-    "bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears),
-}
-"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend."""
+ELASTIC_GEARS = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
+"""Face gears that bend."""
+BODIES = {**ELASTIC_GEARS, "casing": From("casing", "reduced", when=machine_conditions.casing)}
+"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend, and a
+casing.
+"""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=conditions.single_teeth)}
 """Teeth that deviate from the others."""
 MOTION_INPUTS = {
