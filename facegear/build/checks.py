@@ -7,11 +7,12 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
-from facegear.schema.changes import moves_pair
+from facegear.schema.changes import TEETH, moves_pair
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.studies import Search
@@ -45,7 +46,8 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     ToothNumbers
         Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    return ToothNumbers.of_config(pair.model_dump())
+    bodies = {"pinion": {"middle_mm"}, "face_gear": {"inner_radius_mm", "outer_radius_mm"}}
+    return ToothNumbers.of_config(pair.model_dump(include=dict.fromkeys(TEETH, True) | bodies))
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:

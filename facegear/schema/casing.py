@@ -6,7 +6,11 @@ from pydantic import Field, model_validator
 
 from facegear.schema.base import Section, refuse, require_all
 
-Direction = Annotated[tuple[float, float, float], Field(min_length=3, max_length=3)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Direction = tuple[Coordinate, Coordinate, Coordinate]
+LARGEST_NODE = 999_999_999
+"""Largest number of a node that finite-element programs write."""
+Node = Annotated[int, Field(ge=1, le=LARGEST_NODE)]
 SQUARE = 1e-6
 """Cosine between two axes up to which they count as perpendicular."""
 
@@ -36,10 +40,8 @@ class CasingAxes(Section):
 class CasingPlace(Section):
     """Nodes that move as one: a node with rotations, or a patch of several that is rigid."""
 
-    node: int | None = Field(None, ge=1, description="a node with six dofs")
-    nodes: tuple[Annotated[int, Field(ge=1)], ...] = Field(
-        (), max_length=100_000, description="a rigid patch of nodes"
-    )
+    node: Node | None = Field(None, description="a node with six dofs")
+    nodes: tuple[Node, ...] = Field((), max_length=100_000, description="a rigid patch of nodes")
     patch: str | None = Field(
         None, min_length=1, max_length=60, description="a rigid patch: its name in column patch of `nodes`"
     )
@@ -97,7 +99,7 @@ class CasingSensor(Section):
     """A point whose vibration is told."""
 
     name: str = Field(min_length=1, max_length=40, description="names it in tables and figures")
-    node: int = Field(ge=1, description="a node with motions along x, y and z")
+    node: Node = Field(description="a node with motions along x, y and z")
     direction: Direction = Field((0.0, 0.0, 1.0), description="in the axes of the file")
 
     @model_validator(mode="after")
@@ -108,7 +110,7 @@ class CasingSensor(Section):
         return self
 
 
-Seat = Annotated[int, Field(ge=1)] | CasingPlace
+Seat = Node | CasingPlace
 
 
 class CasingSection(Section):

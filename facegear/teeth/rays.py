@@ -29,7 +29,7 @@ class Shaper(NamedTuple):
     base: radius of its base cylinder. ratio: its tooth number over the gear's. phase: angle from the middle
     of its space to the involute's start, at `middle`. sine: of its base helix, signed. middle: y of the
     section that other numbers are for. lift, offset: of its axis. taper: growth of its tip's radius with y.
-    tip_centre, tip_rounding: distance of its tip rounding's centre from its axis, and radius of that rounding.
+    tip_centre, tip_rounding: distance of its tip rounding's centre from its axis, and that rounding's radius.
     """
 
     base: float
@@ -77,7 +77,7 @@ class Blank(NamedTuple):
     """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`).
 
     flank: the side that is looked at. back: the other side, seen in a mirror. inner, outer: radii of the face
-    (m). tip, root: heights of the lands over gear radii. pitch: angular pitch (rad). module: normal module (m).
+    (m). tip, root: heights of the lands over gear radii. pitch: of teeth (rad). module: normal module (m).
     """
 
     flank: Side
