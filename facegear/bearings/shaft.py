@@ -123,6 +123,39 @@ class RollingShaft:
         """T: motions of the inner rings by those of the pinion's middle on a rigid shaft, (5 bearings, 5)."""
         return np.concatenate([carry_motion(support.position - self.pinion) for support in self.supports])
 
+    def deflections(self, pinion: Array, forces: Array, at: Array) -> Array:
+        """Return the motions of the shaft along its length.
+
+        Parameters
+        ----------
+        pinion : (5,) array
+            Motion of the pinion's middle, m and rad.
+        forces : (bearings, 5) array
+            Loads of the shaft on its bearings, N and N m.
+        at : (n,) array
+            Distances from the shaft's beginning, m.
+
+        Returns
+        -------
+        (n, 5) array
+            x, y, z, tilt_x, tilt_y, m and rad.
+        """
+        positions = np.array([support.position for support in self.supports])
+        relative = self._relative_compliance(np.concatenate([positions, at]))
+        bearings = MOTIONS * positions.size
+        rigid = np.concatenate([carry_motion(float(z) - self.pinion) for z in at])
+        motions = rigid @ pinion - relative[bearings:, :bearings] @ forces.ravel()
+        return np.asarray(motions.reshape(-1, MOTIONS))
+
+    def _relative_compliance(self, at: Array) -> Array:
+        """Return the compliance (5 n, 5 n) of places (n,), m, seen from the pinion, SI units."""
+        blocks = clamped_compliance(self.segments, self.material, np.array([self.pinion, *at]))
+        size = MOTIONS * (at.size + 1)
+        from_beginning = blocks.transpose(0, 2, 1, 3).reshape(size, size)
+        rigid = np.concatenate([carry_motion(float(z) - self.pinion) for z in at])
+        relative = np.concatenate([-rigid, np.eye(size - MOTIONS)], axis=1)
+        return np.asarray(relative @ from_beginning @ relative.T)
+
     @cached_property
     def bending(self) -> Array:
         """B: motions of the rings by the m coordinates of the bent shaft, (5 bearings, m), m/J^0.5 and
@@ -131,13 +164,9 @@ class RollingShaft:
         Columns are eigenvectors of the compliance C of the rings, seen from the pinion, times the roots
         of their eigenvalues; eigenvalues below RANGE of the largest are left out.
         """
-        at = np.array([self.pinion, *(support.position for support in self.supports)])
-        blocks = clamped_compliance(self.segments, self.material, at)
-        size = MOTIONS * at.size
-        from_beginning = blocks.transpose(0, 2, 1, 3).reshape(size, size)
-        relative = np.concatenate([-self.rigid, np.eye(size - MOTIONS)], axis=1)
         arms = self.arms
-        compliance = relative @ from_beginning @ relative.T * np.outer(arms, arms)
+        positions = np.array([support.position for support in self.supports])
+        compliance = self._relative_compliance(positions) * np.outer(arms, arms)
         values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
         counts = values > RANGE * max(float(values[-1]), 1e-300)
         return np.asarray(vectors[:, counts] * np.sqrt(values[counts]) / arms[:, None])

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
+from facegear.build.casing import check_casing, content
 from facegear.build.checks import (
     CONTACT_ASKED,
     check_load,
@@ -292,6 +293,7 @@ class Config(Section):
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         check_bodies(pair, machine)
+        check_casing(machine)
         check_pitch_once(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
             requirement = "given, as tooth_pair has no bodies that it could be taken from"
@@ -349,4 +351,6 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if config.transmission is not None:
         complete = with_backlash(config.tooth_pair, config.transmission)
         values["transmission"] = complete.model_dump(mode="json")
+        if complete.casing is not None:
+            values["transmission"]["casing"]["content"] = content(complete.casing)
     return values

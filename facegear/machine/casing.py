@@ -19,6 +19,7 @@ from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
 from facegear.machine.drive_line import DriveLine
+from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.shafts import SeatedShaft
@@ -26,6 +27,8 @@ from facegear.rigid_body import MOTIONS
 
 CASING = "casing"
 """Body of the casing's coordinates in labels: `casing:upper gear x`."""
+CASING_MODE = 0.5
+"""Part of the kinetic energy in the casing from which a mode is one of the casing: a free choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +61,8 @@ class Casing:
         for names in self.bearing_seats.values():
             for name in names:
                 if name and name not in self.mounted.seats:
-                    known = ", ".join(self.mounted.seats)
-                    raise InvalidInput("seat of a bearing", name, f"one of the casing's seats: {known}")
+                    seat_names = ", ".join(self.mounted.seats)
+                    raise InvalidInput("seat of a bearing", name, f"one of the casing's seats: {seat_names}")
 
     @property
     def size(self) -> int:
@@ -116,24 +119,24 @@ class Casing:
 
     def _ring_motions(self, body: int) -> Array:
         """Return the motions (5 bearings, size) of the outer rings of a pinion's shaft by the casing."""
-        places = self.bearing_places[body]
+        distances = self.bearing_places[body]
         return np.concatenate(
             [
-                self._motion_on(name, body, float(place))
-                for name, place in zip(self.bearing_seats[body], places, strict=True)
+                self._motion_on(name, body, float(distance))
+                for name, distance in zip(self.bearing_seats[body], distances, strict=True)
             ]
         )
 
-    def _motion_on(self, seat: str, body: int, place: float | None) -> Array:
+    def _motion_on(self, seat: str, body: int, distance: float | None) -> Array:
         """Return the motion (5, size) that a seat gives a point of a body's axis, in the body's own axes.
 
-        place: of the point along a pinion's axis from the gears' axis, m; None for the pinion's middle, or
+        distance: of the point along a pinion's axis from the gears' axis, m; None for the pinion's middle, or
         the point on the gear's axis to which its motions belong.
         """
         motion = np.zeros((MOTIONS, self.size))
         if not seat:
             return motion
-        axes, point = body_axes(self.layout, body, place)
+        axes, point = body_axes(self.layout, body, distance)
         at = self.mounted.seats[seat]
         number = at.start // SEAT_MOTIONS
         arm = point - self.mounted.seat_positions[number]
@@ -199,9 +202,8 @@ class Casing:
         rows = np.zeros((2, len(layout.meshes), self.size))
         for mesh, (i, g) in enumerate(layout.meshes):
             if g in self.tilting_with_seat:
-                along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
-                lift = layout.gears[g].sign * np.sin(layout.pressure_angle) * layout.mesh_radius
-                rows[:, mesh] = lift * along @ self.gear_tilts(g)
+                by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
+                rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
         return rows.reshape(2 * len(layout.meshes), self.size)
 
     def __call__(self, base_model: LinearModel, line: DriveLine | None = None) -> LinearModel:
@@ -221,16 +223,16 @@ class Casing:
         """
         old, new = base_model.size, self.size
         relative = np.hstack([np.eye(old), -self.relative_motions(base_model.labels, line)])
-        own, strain = self.mounted.stiffness, self.strain_between_seats
+        casing_stiffness, strain = self.mounted.stiffness, self.strain_between_seats
         stiffness = relative.T @ base_model.stiffness @ relative
-        stiffness[old:, old:] += own + strain
+        stiffness[old:, old:] += casing_stiffness + strain
         mass, dampers = np.zeros((2, old + new, old + new))
         mass[:old, :old] = base_model.mass
         mass[old:, old:] = self.mounted.mass + self._gear_inertias()
         dampers[:old, :old] = base_model.dampers
         dampers[old:, old:] = (
             self.mounted.damping
-            - base_model.bearing_damping * own
+            - base_model.bearing_damping * casing_stiffness
             - base_model.mass_damping * mass[old:, old:]
         )
         zeros = np.zeros(new)
@@ -244,7 +246,7 @@ class Casing:
             forces=np.append(base_model.forces, zeros),
             lengths=np.append(base_model.lengths, self._lengths()),
             dampers=dampers,
-            spin=_padded(base_model.spin, new),
+            spin=_pad_spin(base_model.spin, new),
         )
 
     def _gear_inertias(self) -> Array:
@@ -389,7 +391,7 @@ def casing_start(linear: LinearModel) -> int:
     return next(n for n, label in enumerate(linear.labels) if label.startswith(f"{CASING}:"))
 
 
-def body_axes(layout: Layout, body: int, place: float | None = None) -> tuple[Array, Array]:
+def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple[Array, Array]:
     """Return axes and place of a body in the axes of the casing, X to the first pinion and Z along the
     gears'.
 
@@ -399,7 +401,7 @@ def body_axes(layout: Layout, body: int, place: float | None = None) -> tuple[Ar
         Bodies and mesh geometry.
     body : int
         Number of the body in the layout.
-    place : float or None
+    distance : float or None
         Distance of a point on a pinion's axis from the gears' axis, m; None for the pinion's middle.
 
     Returns
@@ -413,14 +415,18 @@ def body_axes(layout: Layout, body: int, place: float | None = None) -> tuple[Ar
         around = layout.angles[body] - first
         cosine, sine = np.cos(around), np.sin(around)
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
-        return axes, (layout.mesh_radius if place is None else place) * axes[2]
+        place = layout.pinion_middle if distance is None else distance
+        if layout.kind is None:
+            return axes, place * axes[2]
+        axes = layout.kind.lean @ axes
+        return axes, layout.kind.offset * axes[0] + place * axes[2]
     cosine, sine = np.cos(first), np.sin(first)
     axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions
     return axes, np.array([0.0, 0.0, layout.gears[gear].sign * layout.tilt_distance(gear)])
 
 
-def _padded(spin: Spin | None, count: int) -> Spin | None:
+def _pad_spin(spin: Spin | None, count: int) -> Spin | None:
     """Return the matrices of rotation with zeros for more coordinates behind."""
     if spin is None:
         return None

@@ -84,6 +84,9 @@ class LinearModel:
     slopes : (2, meshes, n)
         Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
         dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
+    tangent_loads : (n,)
+        The part of `forces` that tangents of rolling bearings add: tangent times motion less load, both at
+        the mean load; None without rolling bearings.
     """
 
     labels: tuple[str, ...]
@@ -100,6 +103,7 @@ class LinearModel:
     rings: Rings
     spin: Spin | None = field(default=None)
     slopes: Array | None = field(default=None)
+    tangent_loads: Array | None = field(default=None)
 
     @property
     def size(self) -> int:
@@ -210,6 +214,42 @@ class LinearModel:
         """
         owners = [label.rpartition(":")[0] for label in self.labels]
         return np.flatnonzero(np.array(owners) == name)
+
+
+MASSLESS = 1e-14
+"""Eigenvalue of a mass matrix, rows scaled to a unit diagonal, up to which a motion counts as one without
+mass.
+"""
+
+
+def massive_motions(linear: LinearModel) -> Array | None:
+    """Return motions of the coordinates with mass, which those without mass follow statically.
+
+    A casing without mass has such coordinates. No flank may touch them but through coordinates with mass.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model with n coordinates.
+
+    Returns
+    -------
+    (n, k) array or None
+        Motions of all coordinates by k independent ones with mass; None where every motion has mass.
+    """
+    diagonal = np.diagonal(linear.mass)
+    if linear.masses is not None and diagonal.all():
+        return None
+    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
+    values, vectors = np.linalg.eigh(linear.mass * np.outer(scale, scale))
+    is_massless = values <= MASSLESS
+    if not is_massless.any():
+        return None
+    # Coordinates with zero mass have no scale; the others are independent of them.
+    lengths = np.where(diagonal > 0.0, scale, 1.0 / linear.lengths)[:, None]
+    massless, massive = lengths * vectors[:, is_massless], lengths * vectors[:, ~is_massless]
+    held = massless.T @ linear.stiffness @ massless
+    return np.asarray(massive - massless @ np.linalg.solve(held, massless.T @ linear.stiffness @ massive))
 
 
 class Bodies(Protocol):

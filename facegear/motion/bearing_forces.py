@@ -58,8 +58,9 @@ def bearing_forces(model: Model, motion: Track) -> Array:
 
     It is positive along the body's displacement; the bearing pushes back with the opposite force.
 
-    The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
-    clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+    The force is K q + beta K q' + D q', less the constant loads that tangents of rolling bearings have. Mass
+    damping acts from outside and not through a bearing. With clearance the spring acts beyond it, F = k (1 -
+    c / r) (x, y), and its damping is beta dF/dt.
 
     Parameters
     ----------
@@ -79,6 +80,8 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     first = len(moving_parts) - 4 * rings.body.size
     forces = np.zeros((maps.alone.size, motion.count))
     forces[maps.alone] = moving_parts[:first]
+    if linear.tangent_loads is not None:
+        forces -= linear.tangent_loads[linear.translations.ravel(), None]
     forces = forces.reshape(*linear.translations.shape, -1)
     if rings.body.size:
         displacements, rates = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
@@ -158,6 +161,8 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     motion = track(response)
     linear, reduction = model.machine.linear, model.reduction
     moments = {i: motion.along(*_force_matrices(linear, reduction, line.tilts(i))).T for i in line.tilting}
+    if linear.tangent_loads is not None:
+        moments = {i: about - linear.tangent_loads[line.tilts(i)] for i, about in moments.items()}
     return shaft_bearing_loads(line, forces, moments)
 
 

@@ -33,7 +33,7 @@ MAY_IMPORT = {
     "parts": {"teeth", "sparse", "contact"},
     "bearings": {"parts"},
     "casing": set(),
-    "machine": {"teeth", "meshing", "parts", "casing"},
+    "machine": {"teeth", "meshing", "parts", "bearings", "casing"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
     "strength": {"teeth", "contact", "machine", "motion", "sharing"},
