@@ -152,6 +152,7 @@ class Config(Section):
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
                 "transmission.torsion": bool(self.transmission.torsion),
+                "transmission.casing": self.transmission.casing is not None,
                 "a body of a face gear": bool(elastic_gears(self.transmission)),
             }
             for spring_owner in (name for name, is_present in springs.items() if is_present):
