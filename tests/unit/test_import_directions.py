@@ -35,7 +35,7 @@ MAY_IMPORT = {
     "machine": {"teeth", "meshing", "parts", "bearings"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
-    "strength": {"teeth", "contact", "machine", "motion", "sharing"},
+    "strength": {"teeth", "contact", "bearings", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
         *("schema", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion", "sharing"),
@@ -51,8 +51,8 @@ MAY_IMPORT = {
     },
     "report": {"schema", "build", "teeth", "meshing", "contact", "machine", "motion", "sharing"},
     "pipeline": {
-        *("schema", "build", "teeth", "meshing", "contact", "parts", "machine", "motion", "sharing"),
-        *("strength", "lubrication", "studies", "exchange", "report"),
+        *("schema", "build", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion"),
+        *("sharing", "strength", "lubrication", "studies", "exchange", "report"),
     },
     "door": {"schema", "build", "machine", "exchange", "studies", "pipeline"},
 }
