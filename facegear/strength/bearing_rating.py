@@ -210,7 +210,8 @@ def life_table(
         LIFE_COLUMNS; not a number where a life is not asked for or not known. `is_enough` judges the modified
         life where there is one, else L10r.
     """
-    rows, lives = [], []
+    rows: list[tuple[object, ...]] = []
+    lives = []
     for bearing in bearings:
         life = _rate(bearing, bins, lubrication)
         lives.append(life)
