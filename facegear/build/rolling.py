@@ -139,12 +139,15 @@ def _preloaded(section: ShaftSection, distance: float) -> RollingShaft:
 
 
 def _offsets(section: ShaftSection, preload: PreloadSection | None, distance: float) -> Array:
-    """Return the motions of the inner rings (bearings, 5), m and rad, that a preload (m) makes.
+    """Return the motions of the inner rings (bearings, 5), m and rad, that positions of the bores and a
+    preload (m) make.
 
     Each of the pair moves by half of it, as the thrust that loads the bearing. Rings of bearings that take
     thrust both ways move towards each other.
     """
     offsets = np.zeros((len(section.bearings), MOTIONS))
+    for number, bearing in enumerate(section.bearings):
+        offsets[number, :2] = -1e-6 * bearing.position_um.x, -1e-6 * bearing.position_um.y
     if preload is None:
         return offsets
     pair = [ascii_uppercase.index(letter) for letter in preload.bearings]
