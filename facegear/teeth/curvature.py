@@ -17,8 +17,8 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
     """Compute principal relative curvatures (the pinion's plus the gear's) at a point of the gear flank,
     in the nominal assembly, convex counted positive.
 
-    The pinion's radius of curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1
-    everywhere, for N_s > N1 on the contact path, where psi is the pressure angle.
+    The pinion's radius of curvature is taken on the same normal: exact for N_s = N1 everywhere, for N_s > N1
+    on the contact path, where psi is the pressure angle.
 
     Parameters
     ----------
@@ -33,14 +33,17 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
     -------
     tuple of (...) arrays
         Relative curvature of larger and of smaller magnitude, 1/m, and the angle of the contact line, the
-        smaller one's direction, from the pinion's axis, rad.
+        smaller one's direction, from the pinion's generator, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    base, flank = design.shaper_base_radius, gear_flank(design.mirror_family, -1)
-    turn = flank.turn(psi, base * roll, design.mean_radius)
-    profile = turn_about_axis(turn, stack_vectors(np.sin(psi), 0.0, -np.cos(psi)))
-    axial = turn_about_axis(turn, np.broadcast_to([0.0, 1.0, 0.0], profile.shape))
-    nominal = 1 / (base * roll - design.shaper_lift * np.sin(psi)), 0.0, 0.0
+    flank, s = gear_flank(design.mirror_family, -1), design.shaper_base_radius * roll
+    turn = flank.turn(psi, s, flank.lines(psi).y)
+    eta, c, sine = flank.shaper.sine, np.cos(psi), np.sin(psi)
+    # radially from the pinion's axis to the normal, and along its generator; the mirror reverses x
+    profile = turn_about_axis(turn, stack_vectors(sine, 0.0, -c) @ flank.motion.basis)
+    generator = stack_vectors(eta * c, flank.shaper.cosine, eta * sine) @ flank.motion.basis
+    axial = turn_about_axis(turn, generator)
+    nominal = 1 / (s - design.shaper_lift * sine / flank.shaper.cosine), 0.0, 0.0
     return _principal(design, roll, psi, profile, axial, nominal)
 
 
@@ -79,30 +82,65 @@ def opposite_curvatures(
     pinion_roll, y, roll, psi = np.broadcast_arrays(
         *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
     )
-    nx, nz = pinion.involute_normal(design, pinion_roll)
-    tangent = np.stack([-nz, np.zeros_like(nx), nx], axis=-1)
-    profile = np.einsum("...ij,...j->...i", to_gear, tangent)
-    axial = np.broadcast_to(to_gear[..., :, 1], profile.shape)
+    profile, axial, slopes = _pinion_directions(design, pinion_roll, y, to_gear)
     across, along, twist = added_curvatures(design, face_gear.flank_point(design, roll, psi))
     own_curvatures = _pinion_deviation(design, pinion_roll, y)
-    curvature = (
-        1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own_curvatures[0]
-    )
-    # depth below the gear's tip plane and roll both fall along the profile's tangent
-    total_twist = -profile[..., 2] * twist + own_curvatures[2]
-    return _principal(design, roll, psi, profile, axial, (curvature, along + own_curvatures[1], total_twist))
+    # changes of gear radius and of depth below its tip per length along profile and generator
+    (radial, axial_radial), (depth, axial_depth) = slopes
+    length = design.pinion_base_radius * pinion_roll / design.family.pinion_flanks[0].cosine
+    curvature = 1 / length + across * depth**2 + own_curvatures[0]
+    curvature = curvature + 2 * twist * radial * depth + along * radial**2
+    axial_curvature = along * axial_radial**2 + own_curvatures[1]
+    axial_curvature = axial_curvature + 2 * twist * axial_radial * axial_depth + across * axial_depth**2
+    total_twist = twist * depth * axial_radial + own_curvatures[2]
+    total_twist = total_twist + twist * radial * axial_depth + along * radial * axial_radial
+    total_twist = total_twist + across * depth * axial_depth
+    return _principal(design, roll, psi, profile, axial, (curvature, axial_curvature, total_twist))
+
+
+def _pinion_directions(
+    design: PairDesign, roll: Array, y: Array, to_gear: Array
+) -> tuple[Array, Array, tuple[tuple[Array, Array], tuple[Array, Array]]]:
+    """Return the pinion's unit tangents (..., 3) across and along its tooth, at roll (rad) and y (m), in the
+    gear's body frame, and the slopes of gear radius and of depth below the gear's tip along either tangent.
+
+    The generator is the tangent along the tooth. Slopes are those of the nominal assembly in the plane of
+    both axes, but for the depth across the tooth.
+    """
+    flank, motion = pinion.pinion_flank(design), design.family.motion
+    helicoid = flank.helicoid
+    psi = flank.slope(helicoid.base_radius * roll, y)
+    c, sine = np.cos(psi), np.sin(psi)
+    tangent = stack_vectors(sine, 0.0, c)
+    generator = stack_vectors(-helicoid.sine * c, helicoid.cosine, helicoid.sine * sine)
+    profile, axial = (np.einsum("...ij,...j->...i", to_gear, part) for part in (tangent, generator))
+    tip_slope = design.family.gear_tip.slope
+    # in mesh psi is the local pressure angle, whatever the turn of the pinion's body
+    upright = np.sin(design.transverse_pressure_angle)
+    radial = np.cos(design.transverse_pressure_angle) * motion.cosine
+    axial_radial = helicoid.cosine * motion.sine + helicoid.sine * upright * motion.cosine
+    axial_height = helicoid.sine * upright * motion.sine - helicoid.cosine * motion.cosine
+    depths = tip_slope * radial - profile[..., 2], tip_slope * axial_radial - axial_height
+    return profile, axial, ((radial, axial_radial), depths)
 
 
 def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
     """Return the curvatures (1/m), convex positive, that deviations of the pinion add at roll (rad) and y
     (m).
 
-    They are across the profile, where its arc grows by r_b th dth, along the axis, and their twist.
+    They are across the profile, where its arc grows by r_b th dth, along the generator, on which the length
+    of roll falls by the sine of the base helix, and their twist.
     """
     grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
-    slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
-    across = slope - derivative(grid, *at, (0, 2)) / roll**2
-    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1)) / roll
+    helicoid = design.family.pinion_flanks[0]
+    eta, c, base = helicoid.sine, helicoid.cosine, helicoid.base_radius
+    slope, bend = derivative(grid, *at, (0, 1)), derivative(grid, *at, (0, 2))
+    across = slope / (base * roll**3) - bend / roll**2
+    along, twist = -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1))
+    if eta == 0.0:
+        return across, along, twist / roll
+    along = c**2 * along + 2 * c * eta * twist - eta**2 * bend
+    return across, along, (c * twist - eta * bend) / roll + eta * slope / (base * roll**2)
 
 
 def _principal(

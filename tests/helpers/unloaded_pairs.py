@@ -4,7 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.teeth.design import PairDesign
-from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line
+from facegear.teeth.family_contact import ContactLine, contact_line
 from facegear.teeth.helicoid import PinionFlank
 from facegear.teeth.surfaces import SurfacePoints
 
@@ -13,7 +13,11 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def pinion_points(design: PairDesign, length: Array, y: Array) -> SurfacePoints:
+<<<<<<< HEAD
     """Return points (...) of the pinion's drive flank as generated, by transverse length of roll and y."""
+=======
+    """Return points (...) of the pinion's drive flank as generated, by length of roll and y (m)."""
+>>>>>>> main
     flank = PinionFlank(design.family.pinion_flanks[0])
     return SurfacePoints(flank.point(length, y), flank.normal(length, y))
 
@@ -21,7 +25,7 @@ def pinion_points(design: PairDesign, length: Array, y: Array) -> SurfacePoints:
 def unloaded_line(design: PairDesign) -> ContactLine | None:
     """Return the line on which the drive flanks of a design touch as assembled."""
     errors = design.assembly
-    return contact_line(design.family, 1, PinionPose(errors, errors.pinion_axial))
+    return contact_line(design.family, 1, errors)
 
 
 def contact_angles(line: ContactLine, s: Array) -> tuple[Array, Array, Array, Array]:

@@ -158,14 +158,13 @@ def test_flanks_touch_along_the_contact_line_and_nowhere_deeper(case, side):
 def changed(family, key, step):
     """Return a family with a small helix, taper, offset (5 mm at 1 rad), shaft angle or asymmetry."""
     rack, angles = family.rack, family.rack.pressure_angles
+    unlike = replace(rack, pressure_angles=(angles[0] + step, angles[1]))
     return {
         "helix": lambda: replace(family, rack=replace(rack, helix_angle=step)),
         "taper": lambda: replace(family, rack=replace(rack, taper_angle=step)),
         "offset": lambda: replace(family, offset=0.005 * step),
         "shaft angle": lambda: replace(family, shaft_angle=pi / 2 + step),
-        "asymmetry": lambda: replace(
-            family, rack=replace(rack, pressure_angles=(angles[0] + step, angles[1]))
-        ),
+        "asymmetry": lambda: replace(family, rack=unlike),
     }[key]()
 
 
