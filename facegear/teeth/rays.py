@@ -88,12 +88,7 @@ class Blank(NamedTuple):
     """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`).
 
     flank: the side that is looked at. back: the other side, seen in a mirror. inner, outer: radii of the face
-<<<<<<< HEAD
-    (m). tip, root: heights of the lands over gear radii. pitch: angular pitch (rad). module: the normal one
-    (m).
-=======
     (m). tip, root: heights of the lands over gear radii. pitch: of teeth (rad). module: normal module (m).
->>>>>>> main
     """
 
     flank: Side
@@ -225,13 +220,8 @@ def _guess(family: ToothFamily, sample: FlankSample) -> Guess:
 
 
 def _flank_sample(family: ToothFamily) -> FlankSample:
-<<<<<<< HEAD
-    """Sample the right flank of a family's gear on SAMPLES x SAMPLES points, gear radius by height, from
-    which searches along rays begin.
-=======
     """Sample the right flank of a family's gear on SAMPLES x SAMPLES points, gear radius by height, where
     searches along rays begin.
->>>>>>> main
     """
     flank, fillet = gear_flank(family, RIGHT), gear_fillet(family, RIGHT)
     radius = np.linspace(family.inner_radius, family.outer_radius, SAMPLES)

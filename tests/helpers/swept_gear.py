@@ -1,10 +1,6 @@
 """What a shaper leaves of a face gear, by turning it through all angles: no equation of meshing.
 
-<<<<<<< HEAD
-The shaper is a rack's envelope (`rolled_rack`) with a cone for its tip and a ball that rounds the edge.
-=======
 The shaper is a rack's envelope (`rolled_rack`) with a cone for its tip and a ball that rounds its edge.
->>>>>>> main
 Points stand in the gear's body frame; `side` is the sign of the flank that cuts them.
 """
 

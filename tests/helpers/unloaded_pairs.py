@@ -13,11 +13,7 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def pinion_points(design: PairDesign, length: Array, y: Array) -> SurfacePoints:
-<<<<<<< HEAD
-    """Return points (...) of the pinion's drive flank as generated, by transverse length of roll and y."""
-=======
     """Return points (...) of the pinion's drive flank as generated, by length of roll and y (m)."""
->>>>>>> main
     flank = PinionFlank(design.family.pinion_flanks[0])
     return SurfacePoints(flank.point(length, y), flank.normal(length, y))
 
