@@ -7,11 +7,12 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
-from facegear.schema.changes import TEETH, moves_pair
+from facegear.schema.changes import moves_pair
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.studies import Search
@@ -43,9 +44,9 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     Returns
     -------
     ToothNumbers
-        Tooth numbers, base radius (m) and pressure angle (rad).
+        Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    return ToothNumbers.of_config({key: getattr(pair, key) for key in TEETH})
+    return ToothNumbers.of_config(pair.model_dump())
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
+from facegear.build.casing import check_casing, content
 from facegear.build.checks import (
     CONTACT_ASKED,
     check_load,
@@ -151,11 +152,20 @@ class Config(Section):
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
                 "transmission.torsion": bool(self.transmission.torsion),
+                "transmission.casing": self.transmission.casing is not None,
                 "a body of a face gear": bool(elastic_gears(self.transmission)),
             }
             for spring_owner in (name for name, is_present in springs.items() if is_present):
                 requirement = f"without bearing_stiffness beside {spring_owner}, whose springs it would scale"
                 raise ConfigError("branches.loci.parameters", list(section.loci.parameters), requirement)
+        rolls = self.transmission is not None and any(
+            shaft.is_rolling for shaft in self.transmission.shafts.values()
+        )
+        parameters = section.loci.parameters if section and rolls else ()
+        for name in ("torque", "bearing_stiffness"):
+            if name in parameters:
+                requirement = f"without {name} beside rolling bearings, whose tangent holds at the mean load"
+                raise ConfigError("branches.loci.parameters", list(parameters), requirement)
         if section and not section.from_rpm <= speed <= section.to_rpm:
             requirement = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
             raise ConfigError("dynamics.speed_rpm", speed, requirement)
@@ -292,6 +302,7 @@ class Config(Section):
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         check_bodies(pair, machine)
+        check_casing(machine)
         check_pitch_once(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
             requirement = "given, as tooth_pair has no bodies that it could be taken from"
@@ -349,4 +360,6 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if config.transmission is not None:
         complete = with_backlash(config.tooth_pair, config.transmission)
         values["transmission"] = complete.model_dump(mode="json")
+        if complete.casing is not None:
+            values["transmission"]["casing"]["content"] = content(complete.casing)
     return values

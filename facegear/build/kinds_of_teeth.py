@@ -116,9 +116,9 @@ def require_moved_kind(key: str, moved_keys: Iterable[str], stage: str) -> None:
     kinds = {f"{PAIR}{kind}" for kind in SPUR_ONLY.get(stage, ()) if kind != FLANKS}
     if FLANKS in SPUR_ONLY.get(stage, ()):
         kinds |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
-    for moved in moved_keys:
-        if moved in kinds:
-            raise ConfigError(key, moved, f"another key, as stage {stage} cannot take such teeth yet")
+    for moved_key in moved_keys:
+        if moved_key in kinds:
+            raise ConfigError(key, moved_key, f"another key, as stage {stage} cannot take such teeth yet")
 
 
 def _unlike_spur(pair: Mapping[str, Any]) -> dict[str, tuple[Any, str]]:

@@ -11,12 +11,13 @@ import scipy.linalg
 from facegear.arrays import Array, Arrays
 from facegear.casing.reduction import MOTIONS, Interface, Reduction, own_modes
 from facegear.errors import InvalidInput
+from facegear.number_format import count_noun
 
 LETTERS = ("x", "y", "z", "tilt_x", "tilt_y", "tilt_z")
 """Motions of a seat or foot, along and about the casing's X (to the first pinion), Y and Z (the gears'
 axis).
 """
-HELD = 1e-9
+HOLDING_LIMIT = 1e-9
 """Smallest eigenvalue over the largest, rows scaled to a unit diagonal, above which feet hold a casing."""
 NEGATIVE = 1e-8
 """Negative eigenvalue over the largest, rows scaled to a unit diagonal, up to which it counts as rounding."""
@@ -46,11 +47,11 @@ class MountedCasing:
     seat_names : (seats,) array of str
         Names of the seats.
     seat_positions : (seats, 3)
-        Their places from the point where the pinions' axes meet the gears' axis, m.
+        Their positions from the point where the pinions' axes meet the gears' axis, m.
     foot_names : (feet,) array of str
         Names of the feet.
     foot_positions : (feet, 3)
-        Their places, m.
+        Their positions, m.
     sensor_names : (sensors,) array of str
         Names of the sensors.
     letters : (n,) array of str
@@ -83,6 +84,11 @@ class MountedCasing:
     sensors: Array
     frequencies: Array
     total_mass: Array
+
+    def __post_init__(self) -> None:
+        # Machines of a study share the casing; arrays that cannot change are compared once.
+        for part in fields(self):
+            getattr(self, part.name).flags.writeable = False
 
     @property
     def size(self) -> int:
@@ -136,7 +142,7 @@ class MountedCasing:
         Returns
         -------
         dict of arrays
-            For an npz file.
+            Arrays (n, n) and the others in the shapes and units of the fields.
         """
         return {part.name: getattr(self, part.name) for part in fields(self)}
 
@@ -210,7 +216,7 @@ def mount(
         else:
             stiffness[rows, rows] += foot.stiffness
             springs[MOTIONS * number + np.arange(MOTIONS), rows] = foot.stiffness
-    kept = np.flatnonzero(~is_held)
+    kept_rows = np.flatnonzero(~is_held)
     turn = np.eye(size)
     for number in range(2 * len(interfaces)):
         turn[3 * number : 3 * number + 3, 3 * number : 3 * number + 3] = rotation
@@ -219,37 +225,37 @@ def mount(
     loads = np.where(is_held[at_feet, None], -stiffness[at_feet], springs)
     inertia = np.where(is_held[at_feet, None], -mass[at_feet], 0.0)
     foot_turn = turn[np.ix_(at_feet, at_feet)]
-    turned = turn[np.ix_(kept, kept)]
-    own = turned @ stiffness[np.ix_(kept, kept)] @ turned.T
-    _require_held(own)
-    own_mass = turned @ mass[np.ix_(kept, kept)] @ turned.T
+    kept_rotation = turn[np.ix_(kept_rows, kept_rows)]
+    kept_stiffness = kept_rotation @ stiffness[np.ix_(kept_rows, kept_rows)] @ kept_rotation.T
+    _require_held(kept_stiffness)
+    kept_mass = kept_rotation @ mass[np.ix_(kept_rows, kept_rows)] @ kept_rotation.T
     damping = reduction.damping
     letters = [f"{interface.name} {letter}" for interface in interfaces for letter in LETTERS]
     letters += [f"mode {number}" for number in range(1, reduction.frequencies.size + 1)]
     return MountedCasing(
         seat_names=_names([seat.name for seat in seats]),
-        seat_positions=_places(seats, rotation, origin),
+        seat_positions=_interface_positions(seats, rotation, origin),
         foot_names=_names([foot.interface.name for foot in feet]),
-        foot_positions=_places([foot.interface for foot in feet], rotation, origin),
+        foot_positions=_interface_positions([foot.interface for foot in feet], rotation, origin),
         sensor_names=_names(sensor_names),
-        letters=_names([letters[row] for row in kept]),
-        stiffness=_symmetric(own),
-        mass=_symmetric(own_mass),
-        damping=_symmetric(turned @ damping[np.ix_(kept, kept)] @ turned.T)
+        letters=_names([letters[row] for row in kept_rows]),
+        stiffness=_symmetric(kept_stiffness),
+        mass=_symmetric(kept_mass),
+        damping=_symmetric(kept_rotation @ damping[np.ix_(kept_rows, kept_rows)] @ kept_rotation.T)
         if damping is not None
-        else _modal_damping(_symmetric(own), _symmetric(own_mass), damping_ratio),
-        foot_loads=(foot_turn @ loads)[:, kept] @ turned.T,
-        foot_inertia=(foot_turn @ inertia)[:, kept] @ turned.T,
-        sensors=reduction.sensors[:, kept] @ turned.T,
+        else _modal_damping(_symmetric(kept_stiffness), _symmetric(kept_mass), damping_ratio),
+        foot_loads=(foot_turn @ loads)[:, kept_rows] @ kept_rotation.T,
+        foot_inertia=(foot_turn @ inertia)[:, kept_rows] @ kept_rotation.T,
+        sensors=reduction.sensors[:, kept_rows] @ kept_rotation.T,
         frequencies=reduction.frequencies,
         total_mass=np.array([total_mass]),
     )
 
 
-def _places(interfaces: Sequence[Interface], rotation: Array, origin: Array) -> Array:
-    """Return the places (k, 3) of interfaces in the axes of the machine, m."""
-    places = np.array([interface.position for interface in interfaces]).reshape(-1, 3)
-    return np.asarray((places - origin) @ rotation.T)
+def _interface_positions(interfaces: Sequence[Interface], rotation: Array, origin: Array) -> Array:
+    """Return the positions (k, 3) of interfaces in the axes of the machine, m."""
+    positions = np.array([interface.position for interface in interfaces]).reshape(-1, 3)
+    return np.asarray((positions - origin) @ rotation.T)
 
 
 def _names(names: Sequence[str]) -> Array:
@@ -283,9 +289,11 @@ def _require_positive(quantity: str, matrix: Array) -> None:
 def _require_held(stiffness: Array) -> None:
     """Refuse a casing that its feet leave free to move."""
     values = _scaled_values(stiffness)
-    if values[0] < HELD * values[-1]:
-        loose = int((values < HELD * values[-1]).sum())
-        raise InvalidInput("feet of the casing", f"{loose} free motions", "such that they hold the casing")
+    if values[0] < HOLDING_LIMIT * values[-1]:
+        loose = int((values < HOLDING_LIMIT * values[-1]).sum())
+        raise InvalidInput(
+            "feet of the casing", count_noun(loose, "free motion"), "such that they hold the casing"
+        )
 
 
 def _modal_damping(stiffness: Array, mass: Array, ratio: float) -> Array:

@@ -112,13 +112,13 @@ def reduce_casing(
             frequencies, modes = _fixed_modes(factor, mass[inner][:, inner], mode_count)
     shape = np.hstack([shape, np.zeros((casing.size, frequencies.size))])
     shape[inner, tie.shape[1] :] = modes
-    reduced = _congruent(stiffness, shape)
+    reduced_stiffness = _congruent(stiffness, shape)
     # Inner rows are in balance under motions of the interfaces: modes and interfaces do not couple.
     first = tie.shape[1]
-    reduced[:first, first:] = reduced[first:, :first] = 0.0
-    reduced[first:, first:] = np.diag((2.0 * np.pi * frequencies) ** 2)
+    reduced_stiffness[:first, first:] = reduced_stiffness[first:, :first] = 0.0
+    reduced_stiffness[first:, first:] = np.diag((2.0 * np.pi * frequencies) ** 2)
     return Reduction(
-        stiffness=reduced,
+        stiffness=reduced_stiffness,
         mass=_congruent(mass, shape),
         damping=None if damping is None else _congruent(damping, shape),
         frequencies=frequencies,
@@ -183,8 +183,8 @@ class _Factor:
             raise _loose(f"{diagonal.min():.3g} on its diagonal")
         self.matrix = matrix.tocsc()
         self.scale = 1.0 / np.sqrt(diagonal)
-        scaled = sparse.diags_array(self.scale)
-        unit = (scaled @ self.matrix @ scaled).tocsc()
+        scaling = sparse.diags_array(self.scale)
+        unit = (scaling @ self.matrix @ scaling).tocsc()
         try:
             # No pivoting keeps the symmetric order, so that the pivots have the signs of the eigenvalues.
             self.factor = linalg.splu(

@@ -15,7 +15,7 @@ from scipy import sparse
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.errors import InvalidInput
-from facegear.io.matrices.labelled import Labelled, MatrixFault
+from facegear.io.matrices.labelled_matrix import LabelledMatrix, MatrixFault
 from facegear.number_format import count_noun
 
 SYMMETRIC = 1e-8
@@ -24,6 +24,8 @@ FREE = 1e-6
 """Force by a rigid motion over the size of the stiffness up to which a casing counts as free.
 
 A file with ten digits gives 1e-10, coordinates in another unit than the rotations 0.1 or more."""
+LOOSE = 1e-9
+"""Stiffness of feet against a rigid motion over the largest up to which they do not hold it."""
 LIGHTEST, HEAVIEST = 4.0, 2e4
 """Mass over the cube of the largest extent, kg/m3, beyond which the unit of a casing is doubted.
 
@@ -41,7 +43,7 @@ class WholeCasing:
     Attributes
     ----------
     node, direction : (n,)
-        What each row is, as in `Labelled`.
+        What each row is, as in `LabelledMatrix`.
     stiffness, mass : sparse array (n, n)
         N/m, N, N m and kg, kg m, kg m2.
     damping : sparse array (n, n) or None
@@ -49,7 +51,7 @@ class WholeCasing:
     numbers : (nodes,)
         Numbers of the nodes whose place is known.
     positions : (nodes, 3)
-        Their places, m.
+        Their positions, m.
     patches : list of str
         Name of the patch that each of these nodes belongs to, empty for none.
     """
@@ -99,8 +101,8 @@ class WholeCasing:
         """
         motions = np.zeros((self.size, 6))
         is_node = self.node != 0
-        places = np.array([self.position_of_node[int(node)] for node in self.node[is_node]])
-        motions[is_node] = rigid_rows(places - about, self.direction[is_node])
+        positions = np.array([self.position_of_node[int(node)] for node in self.node[is_node]])
+        motions[is_node] = rigid_rows(positions - about, self.direction[is_node])
         return motions
 
     def scale(self, length: float) -> Array:
@@ -121,8 +123,8 @@ class WholeCasing:
     @property
     def extent(self) -> float:
         """Largest extent of the nodes along an axis, m; 1 for a single node."""
-        used = [self.position_of_node[node] for node in self.rows_of_node]
-        return float(np.ptp(used, axis=0).max(initial=0.0)) or 1.0
+        node_positions = [self.position_of_node[node] for node in self.rows_of_node]
+        return float(np.ptp(node_positions, axis=0).max(initial=0.0)) or 1.0
 
     @cached_property
     def rigid_mass(self) -> Array:
@@ -143,7 +145,7 @@ class WholeCasing:
         Returns
         -------
         float
-            Dimensionless: rounding for a casing that is free.
+            Rounding for a casing that is free; dimensionless.
         """
         length = self.extent
         scale = self.scale(length)
@@ -153,12 +155,12 @@ class WholeCasing:
         return float(np.abs(forces).max() / _largest(self.stiffness, scale))
 
 
-def rigid_rows(places: Array, directions: Integers) -> Array:
+def rigid_rows(positions: Array, directions: Integers) -> Array:
     """Return motions of rows by the rigid motions of a body about the origin.
 
     Parameters
     ----------
-    places : (rows, 3) array
+    positions : (rows, 3) array
         Place of the node of each row, m.
     directions : (rows,) array of int
         Direction of each row, 1 to 6.
@@ -168,21 +170,21 @@ def rigid_rows(places: Array, directions: Integers) -> Array:
     (rows, 6) array
         m and rad for a unit of motion along or rotation about x, y, z: [1, -(d x)].
     """
-    x, y, z = places.T
+    x, y, z = positions.T
     zeros = np.zeros_like(x)
     around = np.stack(
         [np.stack([zeros, z, -y], 1), np.stack([-z, zeros, x], 1), np.stack([y, -x, zeros], 1)], axis=1
     )
-    whole = np.zeros((len(places), 6, 6))
+    whole = np.zeros((len(positions), 6, 6))
     whole[:, :3, :3] = whole[:, 3:, 3:] = np.eye(3)
     whole[:, :3, 3:] = around
-    return np.asarray(whole[np.arange(len(places)), directions - 1])
+    return np.asarray(whole[np.arange(len(positions)), directions - 1])
 
 
 def whole_casing(
-    stiffness: Labelled,
-    mass: Labelled | None,
-    damping: Labelled | None,
+    stiffness: LabelledMatrix,
+    mass: LabelledMatrix | None,
+    damping: LabelledMatrix | None,
     nodes: tuple[Integers, Array, Sequence[str]],
     units: str,
 ) -> WholeCasing:
@@ -190,9 +192,9 @@ def whole_casing(
 
     Parameters
     ----------
-    stiffness : Labelled
+    stiffness : LabelledMatrix
         Stiffness in the units of the file.
-    mass, damping : Labelled or None
+    mass, damping : LabelledMatrix or None
         None for none: a casing without mass, or with a damping ratio.
     nodes : tuple of (nodes,) array, (nodes, 3) array and sequence of str
         Numbers, coordinates in mm and patches of the nodes.
@@ -214,20 +216,20 @@ def whole_casing(
     # Energy in N mm is 1e-3 J; that of masses in t and mm, too.
     joules = 1.0 / per_metre
     matrices = {}
-    for quantity, labelled in (("stiffness", stiffness), ("mass", mass), ("damping", damping)):
-        if labelled is None:
+    for quantity, file_matrix in (("stiffness", stiffness), ("mass", mass), ("damping", damping)):
+        if file_matrix is None:
             continue
         try:
-            matrix = labelled.in_order_of(stiffness)
+            matrix = file_matrix.in_order_of(stiffness)
         except MatrixFault as fault:
             raise InvalidInput(
                 f"{quantity} of the casing", "rows", f"those of its stiffness: {fault}"
             ) from None
-        matrices[quantity] = _require_symmetric(quantity, _scaled(matrix, scale) * joules)
+        matrices[quantity] = _require_symmetric(quantity, _scale_rows(matrix, scale) * joules)
     numbers, coordinates, patches = nodes
-    missing = np.setdiff1d(stiffness.node[stiffness.node != 0], numbers)
-    if missing.size:
-        condition = f"with node {missing[0]}, which has rows in its stiffness"
+    absent_nodes = np.setdiff1d(stiffness.node[stiffness.node != 0], numbers)
+    if absent_nodes.size:
+        condition = f"with node {absent_nodes[0]}, which has rows in its stiffness"
         raise InvalidInput("nodes of the casing", count_noun(numbers.size, "node"), condition)
     has_rows = np.isin(numbers, stiffness.node)
     empty = sparse.csc_array((stiffness.size, stiffness.size))
@@ -265,6 +267,36 @@ def require_free(casing: WholeCasing) -> None:
         raise InvalidInput("stiffness of the casing", count_noun(casing.size, "row"), condition)
 
 
+def require_held(casing: WholeCasing, feet: Sequence[tuple[Array, Array | None]]) -> None:
+    """Refuse a free casing whose feet do not hold it.
+
+    Parameters
+    ----------
+    casing : WholeCasing
+        The casing.
+    feet : sequence of tuple of (3,) array and (6,) array or None
+        Place (m) and springs (N/m and N m/rad) of each foot; None for one that is held.
+
+    Raises
+    ------
+    InvalidInput
+        If a rigid motion meets no force.
+    """
+    if any(springs is None for _, springs in feet) or casing.rigid_force() > FREE:
+        return
+    about = np.mean(list(casing.position_of_node.values()), axis=0)
+    stiffness, length = np.zeros((6, 6)), casing.extent
+    for position, springs in feet:
+        motions = rigid_rows(np.tile(position - about, (6, 1)), np.arange(1, 7))
+        stiffness += motions.T @ np.diag(springs if springs is not None else np.zeros(6)) @ motions
+    scale = np.array([1.0, 1.0, 1.0, *3 * (1.0 / length,)])
+    values = np.linalg.eigvalsh(stiffness * np.outer(scale, scale))
+    loose = int((values <= LOOSE * values[-1]).sum())
+    if loose:
+        value = f"{count_noun(loose, 'free motion')}"
+        raise InvalidInput("feet of the casing", value, "such that they hold the casing")
+
+
 def require_mass(casing: WholeCasing, mass: float | None) -> None:
     """Refuse a mass that is off by the factor of a wrong unit.
 
@@ -298,7 +330,7 @@ def require_mass(casing: WholeCasing, mass: float | None) -> None:
     raise InvalidInput("mass of the casing", f"{total:.4g} kg", requirement)
 
 
-def _scaled(matrix: Any, scale: Array) -> Any:
+def _scale_rows(matrix: Any, scale: Array) -> Any:
     """Return a sparse matrix with rows and columns multiplied by `scale` (n,)."""
     diagonal = sparse.diags_array(scale)
     return (diagonal @ matrix @ diagonal).tocsc()
@@ -306,15 +338,14 @@ def _scaled(matrix: Any, scale: Array) -> Any:
 
 def _largest(matrix: Any, scale: AnyArray) -> float:
     """Return the largest entry of a sparse matrix in size, rows and columns multiplied by `scale`."""
-    return float(np.abs(_scaled(matrix, scale).data).max(initial=0.0))
+    return float(np.abs(_scale_rows(matrix, scale).data).max(initial=0.0))
 
 
 def _require_symmetric(quantity: str, matrix: Any) -> Any:
     """Return the symmetric part of a matrix; refuse a skew part above SYMMETRIC of its size."""
     skew = (matrix - matrix.T).tocoo()
     size = np.sqrt(np.abs(matrix.diagonal()))
-    allowed = SYMMETRIC * np.maximum(size[skew.row] * size[skew.col], 0.0)
-    excess = np.abs(skew.data) > allowed + SYMMETRIC * 1e-3 * np.abs(matrix.data).max(initial=0.0)
+    excess = np.abs(skew.data) > SYMMETRIC * size[skew.row] * size[skew.col]
     if excess.any():
         row = int(skew.row[np.argmax(excess)])
         column = int(skew.col[np.argmax(excess)])

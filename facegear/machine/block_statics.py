@@ -14,7 +14,7 @@ import numpy as np
 
 from facegear._kernels import statics
 from facegear.arrays import Array, Integers
-from facegear.machine.casing import SeatMotion, seat_motion
+from facegear.machine.casing_coordinates import SeatMotion
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.machine import Machine
 from facegear.meshing.law import LawAtPhases, LinearHeld, LoadDependentHeld
@@ -130,7 +130,7 @@ class StaticBlocks:
         What 1 m of each unknown is in m or rad.
     size : int
         Number of all degrees of freedom.
-    carried : SeatMotion or None
+    seat_motions : SeatMotion or None
         Motion of bodies with their seats, which is taken off their unknowns; None where seats stand still.
     """
 
@@ -138,7 +138,7 @@ class StaticBlocks:
     coordinates: Integers
     scale: Array
     size: int
-    carried: SeatMotion | None = None
+    seat_motions: SeatMotion | None = None
 
     def displacements(self, solution: Array) -> Array:
         """Return the displacements of all degrees of freedom.
@@ -155,7 +155,7 @@ class StaticBlocks:
         """
         displacements = np.zeros((len(solution), self.size))
         np.add.at(displacements.T, self.coordinates, (solution * self.scale).T)
-        return displacements if self.carried is None else self.carried.absolute(displacements)
+        return displacements if self.seat_motions is None else self.seat_motions.absolute(displacements)
 
 
 def static_blocks(machine: Machine) -> StaticBlocks | None:
@@ -175,8 +175,8 @@ def static_blocks(machine: Machine) -> StaticBlocks | None:
         The problem with the machine's loads and bearing clearances; flank gaps are given to `settle_all`.
     """
     blocks, loads = _unloaded_blocks(machine.without_errors), machine.linear.loads
-    if blocks is not None and blocks.carried is not None:
-        loads = blocks.carried.along_relative(loads)
+    if blocks is not None and blocks.seat_motions is not None:
+        loads = blocks.seat_motions.along_relative(loads)
     if blocks is None or np.delete(loads, blocks.coordinates).any():
         return None
     springs = blocks.springs._replace(
@@ -192,18 +192,18 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
     bearings and meshes share it.
     """
     layout, linear = machine.layout, machine.linear
-    stiffness, rows, carried = linear.stiffness, linear.rows, None
+    stiffness, rows, seat_motions = linear.stiffness, linear.rows, None
     coordinates, scale = _select_unknowns(layout, linear.lengths)
-    if machine.casing is not None:
-        carried = seat_motion(machine.casing, linear, machine.drive_line)
-        stiffness, rows = carried.relative_stiffness(stiffness), carried.along_relative(rows)
+    if machine.casing is not None and not machine.casing.is_condensed:
+        seat_motions = machine.casing.seat_motion(linear, machine.drive_line)
+        stiffness, rows = seat_motions.relative_stiffness(stiffness), seat_motions.along_relative(rows)
         # A mode of the casing takes no load at rest.
-        is_moved = ~np.isin(coordinates, carried.modes)
+        is_moved = ~np.isin(coordinates, seat_motions.modes)
         coordinates, scale = coordinates[is_moved], scale[is_moved]
     if not _has_blocks(layout, coordinates, stiffness, rows):
         return None
     springs = _springs(layout, coordinates, scale, stiffness, rows)
-    return StaticBlocks(springs, coordinates, scale, linear.size, carried)
+    return StaticBlocks(springs, coordinates, scale, linear.size, seat_motions)
 
 
 def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:

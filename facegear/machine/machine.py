@@ -21,8 +21,10 @@ from facegear.machine.disturbances import (
 )
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.imperfections import Imperfections, perfect
-from facegear.machine.layout import Layout, PhaseConvention, Role, mesh_phases
+from facegear.machine.layout import Layout, Role
 from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.supports import add_tangents
 from facegear.meshing.force_table import ForceTable
 from facegear.meshing.law import MeshLaw
 from facegear.number_format import count_noun
@@ -151,6 +153,8 @@ class Machine:
             object.__setattr__(self, "imperfections", perfect(self.layout))
         if self.forces is None:
             object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
+        if self.casing is not None and self.casing.layout is not self.layout:
+            object.__setattr__(self, "casing", replace(self.casing, layout=self.layout))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
         for quantity, values in (
@@ -171,9 +175,14 @@ class Machine:
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Linear model of the whole machine, computed once: `lumped_model`, extended by the drive line,
-        then by the casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first
-        coordinates are the layout's.
+        """Linear model of the whole machine, the tangents of its rolling bearings included."""
+        return add_tangents(self.linear_without_rolling, self.drive_line)
+
+    @cached_property
+    def linear_without_rolling(self) -> LinearModel:
+        """Linear model without rolling bearings: `lumped_model`, extended by the drive line, then by the
+        casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates
+        are the layout's.
         """
         model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
         if self.casing is not None:
@@ -197,10 +206,10 @@ class Machine:
         """Machine without backlash, constant errors, runouts, pitch deviations and errors of single
         teeth.
 
-        Stiffness factors, clocking and the series e(t) of single meshes stay. Bearing clearances become 1
-        m where they are positive, which only marks the bearing, and stay 0 elsewhere. Machines that
-        differ in these errors alone share one object, so that results which do not depend on them are
-        cached once.
+        Stiffness factors, clocking, the series e(t) of single meshes and the places of pinions along their
+        axes stay. Bearing clearances become 1 m where they are positive, which only marks the bearing, and
+        stay 0 elsewhere. Machines that differ in these errors alone share one object, so that results which
+        do not depend on them are cached once.
         """
         imperfections, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
         return _machine_without_errors(
@@ -209,6 +218,7 @@ class Machine:
             imperfections.clocking,
             imperfections.series,
             imperfections.bearing_clearance > 0.0,
+            imperfections.outwards,
         )
 
     @cached_property
@@ -335,13 +345,14 @@ def _machine_without_errors(
     clocking: Array,
     series: dict[int, Harmonics],
     with_clearance: Mask,
+    outwards: Array,
 ) -> Machine:
     """Return the machine with given fields, without backlash, constant and slow errors; equal arguments
     share it.
 
     `rest` holds the values of the fields `_WITHOUT_ERRORS`, in that order; stiffness (meshes,) are
     factors; clocking (pinions,), pitches; series: e(t) of single meshes by index; with_clearance
-    (pinions,): bearings that get a clearance of 1 m.
+    (pinions,): bearings that get a clearance of 1 m; outwards (pinions,): their places, m.
     """
     field_values = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
     flaws = replace(
@@ -350,6 +361,7 @@ def _machine_without_errors(
         clocking=clocking,
         series=series,
         bearing_clearance=np.where(with_clearance, 1.0, 0.0),
+        outwards=outwards,
     )
     return Machine(**field_values, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from facegear.build.casing import has_casing
 from facegear.build.elastic_bodies import any_elastic
 from facegear.build.machine_layout import has_groups, split_kinds
 from facegear.build.notes import turns
@@ -61,6 +62,24 @@ def elastic_gears(case: Case) -> bool:
     return any_elastic(case.values["transmission"])
 
 
+def casing(case: Case) -> bool:
+    """Whether the machine stands on a casing.
+
+    It does where section `transmission` has a section `casing`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return has_casing(case.values["transmission"])
+
+
 def solid_pair(case: Case) -> Any:
     """Return section tooth_pair where the body of a face gear bends, for stages that take the pair only
     because of that body.
@@ -95,6 +114,24 @@ def drive_line(case: Case) -> bool:
     """
     transmission = case.values["transmission"]
     return transmission is not None and bool(transmission["shafts"] or transmission["torsion"])
+
+
+def rolling_bearings(case: Case) -> bool:
+    """Whether a shaft stands on rolling bearings.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    transmission = case.values["transmission"]
+    shafts = {} if transmission is None else transmission["shafts"]
+    return any(bearing["rolling"] is not None for shaft in shafts.values() for bearing in shaft["bearings"])
 
 
 def shaft_figures(case: Case) -> list[str]:

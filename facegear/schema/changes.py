@@ -31,7 +31,7 @@ WITHOUT_MESHING = tuple(f"{PAIR}{key}" for key in (*GAPS, *MODULI))
 """Keys of the tooth pair that may change without a body being meshed and factorised again."""
 SHARED_SECTIONS = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshes": None}
 """Sections of single parts, each with the section that all parts of the kind share."""
-START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
+START = {"position_um": {"x": 0.0, "y": 0.0, "z": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
 """Values of a part without an entry of its own where the shared section says nothing."""
 ONE_SIDE, DIAMETRAL = "clearance_um", "clearance_diametral_um"
 """Two ways in which a config gives the clearance of pinions; the second number is twice the first."""

@@ -12,6 +12,7 @@ from facegear.teeth.analysis import PairAnalysis, path_curvatures
 from facegear.teeth.clearance import Gap, pinion_outline
 from facegear.teeth.conjugate import PairNumbers
 from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_numbers import blank_numbers, flank_numbers
 from facegear.teeth.placement import conjugate_angle
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
@@ -95,8 +96,8 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
 
 
 def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
-    """Return the content of `geometry/pair.json`: radii, limits, contact ratio and path, backlash, smallest
-    gaps.
+    """Return the content of `geometry/pair.json`: numbers of blanks and flanks, radii, limits, contact ratio
+    and path, backlash, smallest gaps.
 
     Parameters
     ----------
@@ -114,6 +115,8 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
     roll, large, small, slope = path_curvatures(design)
     return {
         "design_si": asdict(design),
+        "blanks": blank_numbers(design),
+        "flanks": flank_numbers(design),
         "radii_mm": {
             "pinion_base": 1e3 * design.pinion_base_radius,
             "pinion_pitch": 1e3 * design.pinion_pitch_radius,

@@ -5,7 +5,7 @@ Spur teeth take them from the same surfaces as all others (`family_range`), with
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import acos, atan, cos, hypot, pi, sin
+from math import acos, atan, cos, hypot, pi, sin, sqrt
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -307,3 +307,43 @@ def _root_near(function: Callable[[float], float], guess: float) -> float:
             return float(brentq(function, low, high, xtol=ROUNDING))
         width *= 2
     raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")
+
+
+def pitch_line_radius(design: PairDesign, y: float) -> float:
+    """Compute the gear radius at a place of the pitch line, which lies in the pinion's pitch cylinder.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : float
+        Place along the pinion's axis, m.
+
+    Returns
+    -------
+    float
+        m; y itself where axes cross at 90 degrees.
+    """
+    motion = design.family.motion
+    return hypot(y * motion.sine - design.pinion_pitch_radius * motion.cosine, design.offset)
+
+
+def common_face(design: PairDesign) -> tuple[float, float]:
+    """Compute the ends, along the pinion's axis, of the part of the pitch line that both faces cover.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float]
+        Inner and outer end y, m.
+    """
+    motion, face, half = design.family.motion, design.face_gear, design.pinion.width / 2
+    first, last = (
+        (sqrt(radius**2 - design.offset**2) + design.pinion_pitch_radius * motion.cosine) / motion.sine
+        for radius in (face.inner_radius, face.outer_radius)
+    )
+    return max(first, design.middle - half), min(last, design.middle + half)

@@ -67,3 +67,9 @@ def make_machine(
 def drive_rows(layout):
     """Rows of the drive flanks alone, (meshes, dof)."""
     return layout.kinematics.flank_rows(layout)[: len(layout.meshes)]
+
+
+def mesh_parts(layout):
+    """Tangential and separating part of the flanks' rows of spur teeth, (meshes, dof) each."""
+    drive, back = np.split(layout.kinematics.flank_rows(layout), 2)
+    return 0.5 * (drive - back), 0.5 * (drive + back)

@@ -176,7 +176,7 @@ class _TwinAtPosition:
     unloaded_error = 0.0
 
     @property
-    def base_radius(self) -> float:
+    def normal_arm(self) -> float:
         return self.model.pinion.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:

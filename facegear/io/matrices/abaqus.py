@@ -6,13 +6,19 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from facegear.io.matrices.labelled import Labelled, MatrixFault, from_entries, read_lines, read_numbers
+from facegear.io.matrices.labelled_matrix import (
+    LabelledMatrix,
+    MatrixFault,
+    from_entries,
+    read_lines,
+    read_numbers,
+)
 
 COORDINATE_COLUMNS = 5
 """Numbers of a line: node, dof, node, dof, entry."""
 
 
-def read_coordinates(path: Path) -> Labelled:
+def read_coordinates(path: Path) -> LabelledMatrix:
     """Read a matrix of lines `node, dof, node, dof, value`, one triangle or all of it.
 
     Parameters
@@ -22,7 +28,7 @@ def read_coordinates(path: Path) -> Labelled:
 
     Returns
     -------
-    Labelled
+    LabelledMatrix
         The matrix; nodes with negative numbers, which Abaqus gives to internal variables, are modes.
 
     Raises
@@ -44,12 +50,12 @@ def read_coordinates(path: Path) -> Labelled:
     behind = 8 * (int(node.max()) + 1)
     row_node, row_direction, matrix = from_entries(names[0], names[1], numbers[:, 4])
     is_mode = 8 * row_node >= behind
-    return Labelled(
+    return LabelledMatrix(
         np.where(is_mode, 0, row_node), np.where(is_mode, np.cumsum(is_mode), row_direction), matrix
     )
 
 
-def read_substructure(path: Path, quantity: str) -> Labelled | None:
+def read_substructure(path: Path, quantity: str) -> LabelledMatrix | None:
     """Read a matrix from `*USER ELEMENT` and `*MATRIX`: lower triangle by rows.
 
     Parameters
@@ -61,7 +67,7 @@ def read_substructure(path: Path, quantity: str) -> Labelled | None:
 
     Returns
     -------
-    Labelled or None
+    LabelledMatrix or None
         The matrix; None where the file holds none of that quantity.
 
     Raises
@@ -70,8 +76,10 @@ def read_substructure(path: Path, quantity: str) -> Labelled | None:
         For a file that is not valid.
     """
     lines = read_lines(path)
-    nodes, dofs, values = _listed_nodes(lines), [], None
-    wanted = {"stiffness": "STIFFNESS", "mass": "MASS", "damping": "VISCOUSDAMPING"}[quantity]
+    nodes = _listed_nodes(lines)
+    dofs: list[list[int]] = []
+    values: list[float] | None = None
+    type_name = {"stiffness": "STIFFNESS", "mass": "MASS", "damping": "VISCOUSDAMPING"}[quantity]
     state, positions = "", {1: 0}
     for line in lines:
         text = line.strip().upper().replace(" ", "")
@@ -81,7 +89,7 @@ def read_substructure(path: Path, quantity: str) -> Labelled | None:
             state = ""
             if text.startswith("*USERELEMENT"):
                 state = "dofs"
-            elif text.startswith("*MATRIX") and f"TYPE={wanted}" in text:
+            elif text.startswith("*MATRIX") and f"TYPE={type_name}" in text:
                 state, values = "values", []
             continue
         if state == "dofs":
@@ -109,7 +117,8 @@ def read_substructure(path: Path, quantity: str) -> Labelled | None:
     matrix = np.zeros((size, size))
     matrix[np.tril_indices(size)] = values
     matrix += np.tril(matrix, -1).T
-    return Labelled(*np.array(rows, np.int64).T, sparse.csc_array(matrix))
+    node, direction = np.array(rows, np.int64).T
+    return LabelledMatrix(node, direction, sparse.csc_array(matrix))
 
 
 def _listed_nodes(lines: list[str]) -> list[int]:

@@ -5,13 +5,19 @@ from pathlib import Path
 import numpy as np
 
 from facegear.arrays import Integers
-from facegear.io.matrices.labelled import Labelled, MatrixFault, read_lines, read_numbers, symmetric
+from facegear.io.matrices.labelled_matrix import (
+    LabelledMatrix,
+    MatrixFault,
+    read_lines,
+    read_numbers,
+    symmetric,
+)
 
 ENDINGS = {"stiffness": ".sti", "mass": ".mas"}
 """Endings of the files; damping is not stored."""
 
 
-def read_stored(path: Path) -> Labelled:
+def read_stored(path: Path) -> LabelledMatrix:
     """Read a stored matrix, upper triangle, with the rows that the file `.dof` beside it names.
 
     Parameters
@@ -21,7 +27,7 @@ def read_stored(path: Path) -> Labelled:
 
     Returns
     -------
-    Labelled
+    LabelledMatrix
         The matrix.
 
     Raises
@@ -38,7 +44,7 @@ def read_stored(path: Path) -> Labelled:
         )
     is_stored = entries[:, 2] != 0.0
     triangle = bool((row <= column).all())
-    return Labelled(
+    return LabelledMatrix(
         node,
         direction,
         symmetric(row[is_stored], column[is_stored], entries[is_stored, 2], node.size, triangle or None),

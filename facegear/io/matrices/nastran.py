@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from facegear.io.matrices.labelled import Labelled, MatrixFault, from_entries, read_lines
+from facegear.io.matrices.labelled_matrix import LabelledMatrix, MatrixFault, from_entries, read_lines
 
 ONE_TRIANGLE = 6
 """IFO of a symmetric matrix, of which the file holds one triangle."""
@@ -21,7 +21,7 @@ NAMES = {
 """Names of DMIG matrices that hold stiffness, mass and damping, first those of an external superelement."""
 
 
-def read_dmig(path: Path, quantity: str) -> Labelled | None:
+def read_dmig(path: Path, quantity: str) -> LabelledMatrix | None:
     """Read a matrix from a punch file.
 
     Scalar points have component 0 and are taken as modes, numbered by their points.
@@ -35,7 +35,7 @@ def read_dmig(path: Path, quantity: str) -> Labelled | None:
 
     Returns
     -------
-    Labelled or None
+    LabelledMatrix or None
         The matrix; None where the file holds none of that quantity.
 
     Raises
@@ -62,10 +62,10 @@ def read_dmig(path: Path, quantity: str) -> Labelled | None:
         raise MatrixFault("it holds no DMIG matrix")
     name = next((name for name in NAMES[quantity] if name in cards), None)
     if name is None:
-        known = {other for names in NAMES.values() for other in names}
-        unknown = [other for other in cards if other not in known]
-        if quantity == "stiffness" and len(unknown) == 1 and len(cards) == 1:
-            name = unknown[0]
+        known_names = {other_name for names in NAMES.values() for other_name in names}
+        unknown_names = [other_name for other_name in cards if other_name not in known_names]
+        if quantity == "stiffness" and len(unknown_names) == 1 and len(cards) == 1:
+            name = unknown_names[0]
         elif quantity == "stiffness":
             raise MatrixFault(f"it holds {', '.join(cards)}, but none of {', '.join(NAMES[quantity])}")
         else:
@@ -86,7 +86,7 @@ def _fields(text: str) -> list[str]:
     return [head, *(body[k : k + width].strip() for k in range(0, max(len(body), 1), width))]
 
 
-def _matrix(name: str, cards: list[list[str]]) -> Labelled:
+def _matrix(name: str, cards: list[list[str]]) -> LabelledMatrix:
     """Return one matrix from its cards, the header first: name, column node, component, blank, entries."""
     header = next((card for card in cards if _integer(card[1]) == 0 and len(card) > 2 and card[2]), None)
     if header is None or _integer(_field(header, 2)) not in (ONE_TRIANGLE, SQUARE):
@@ -121,7 +121,7 @@ def _matrix(name: str, cards: list[list[str]]) -> Labelled:
     )
     is_scalar = direction == 0
     direction = np.where(is_scalar, np.cumsum(is_scalar), direction)
-    return Labelled(np.where(is_scalar, 0, node), direction, matrix)
+    return LabelledMatrix(np.where(is_scalar, 0, node), direction, matrix)
 
 
 def _field(card: list[str], number: int) -> str:

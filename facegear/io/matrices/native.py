@@ -8,7 +8,7 @@ import numpy as np
 from scipy import io, sparse
 
 from facegear.arrays import Array, Arrays, Integers
-from facegear.io.matrices.labelled import Labelled, MatrixFault, read_lines, read_numbers
+from facegear.io.matrices.labelled_matrix import LabelledMatrix, MatrixFault, read_lines, read_numbers
 
 NPZ_NAMES = ("stiffness", "mass", "damping", "dofs", "nodes")
 """Arrays of an npz: matrices (n, n), rows `node, dof` (n, 2), lines `node, x, y, z` in mm (nodes, 4)."""
@@ -16,7 +16,7 @@ NODE_COLUMNS = ("node", "x_mm", "y_mm", "z_mm")
 """Columns of a list of nodes; `patch` may stand behind them."""
 
 
-def read_csv(path: Path, dofs: tuple[Integers, Integers]) -> Labelled:
+def read_csv(path: Path, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
     """Read a matrix from a csv file of its rows.
 
     Parameters
@@ -28,7 +28,7 @@ def read_csv(path: Path, dofs: tuple[Integers, Integers]) -> Labelled:
 
     Returns
     -------
-    Labelled
+    LabelledMatrix
         The matrix.
 
     Raises
@@ -39,7 +39,7 @@ def read_csv(path: Path, dofs: tuple[Integers, Integers]) -> Labelled:
     return _whole(read_numbers(path, 0, ","), dofs)
 
 
-def read_matrix_market(path: Path, dofs: tuple[Integers, Integers]) -> Labelled:
+def read_matrix_market(path: Path, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
     """Read a matrix from a Matrix Market file.
 
     Parameters
@@ -51,7 +51,7 @@ def read_matrix_market(path: Path, dofs: tuple[Integers, Integers]) -> Labelled:
 
     Returns
     -------
-    Labelled
+    LabelledMatrix
         The matrix.
 
     Raises
@@ -85,18 +85,20 @@ def read_npz(path: Path) -> Arrays:
         For a file that is not valid, or holds another array.
     """
     try:
-        with np.load(path) as stored:
-            unknown = [name for name in stored.files if name not in NPZ_NAMES]
-            if unknown:
-                raise MatrixFault(f"it holds {unknown[0]!r}; arrays may be {', '.join(NPZ_NAMES)}")
-            return {name: np.asarray(stored[name]) for name in stored.files}
+        with np.load(path) as arrays:
+            unknown_names = [name for name in arrays.files if name not in NPZ_NAMES]
+            if unknown_names:
+                raise MatrixFault(f"it holds {unknown_names[0]!r}; arrays may be {', '.join(NPZ_NAMES)}")
+            return {name: np.asarray(arrays[name]) for name in arrays.files}
     except FileNotFoundError:
         raise MatrixFault("no such file") from None
     except (ValueError, OSError, zipfile.BadZipFile, KeyError):
         raise MatrixFault("it is no npz file of numbers") from None
 
 
-def npz_matrix(path: Path, quantity: str, dofs: tuple[Integers, Integers] | None = None) -> Labelled | None:
+def npz_matrix(
+    path: Path, quantity: str, dofs: tuple[Integers, Integers] | None = None
+) -> LabelledMatrix | None:
     """Read a matrix from an npz file.
 
     Parameters
@@ -110,7 +112,7 @@ def npz_matrix(path: Path, quantity: str, dofs: tuple[Integers, Integers] | None
 
     Returns
     -------
-    Labelled or None
+    LabelledMatrix or None
         The matrix; None where the file holds none of that name.
 
     Raises
@@ -118,19 +120,19 @@ def npz_matrix(path: Path, quantity: str, dofs: tuple[Integers, Integers] | None
     MatrixFault
         For a file that is not valid.
     """
-    stored = read_npz(path)
-    if quantity not in stored:
+    arrays = read_npz(path)
+    if quantity not in arrays:
         return None
     if dofs is None:
-        if "dofs" not in stored:
+        if "dofs" not in arrays:
             raise MatrixFault("it holds no array `dofs`: node and dof of each row")
-        table = stored["dofs"]
+        table = arrays["dofs"]
         if table.ndim != 2 or table.shape[1] != 2:
             raise MatrixFault(
                 f"its array `dofs` has shape {table.shape}; it must have two columns, node and dof"
             )
         dofs = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
-    return _whole(stored[quantity], dofs)
+    return _whole(arrays[quantity], dofs)
 
 
 def read_dofs(path: Path) -> tuple[Integers, Integers]:
@@ -206,10 +208,10 @@ def read_nodes(path: Path) -> tuple[Integers, Array, list[str]]:
     return nodes, numbers[:, 1:], patches
 
 
-def _whole(matrix: Array, dofs: tuple[Integers, Integers]) -> Labelled:
+def _whole(matrix: Array, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
     """Return a matrix that is stored whole, with its rows."""
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise MatrixFault(
             f"it has shape {' x '.join(map(str, matrix.shape))}; as many columns as rows are needed"
         )
-    return Labelled(*dofs, sparse.csc_array(matrix, dtype=float))
+    return LabelledMatrix(*dofs, sparse.csc_array(matrix, dtype=float))

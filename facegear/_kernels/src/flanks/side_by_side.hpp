@@ -30,35 +30,15 @@ constexpr double ANYWHERE = 0.4;
 
 using Four = Lanes<WIDTH>;
 
-// Sine and cosine by their series about zero, which end below rounding for angles up to a quarter turn.
-template <int Terms = 11>
-inline Turn<Four> turn_by_series(Four angle) {
-    static constexpr auto coefficients = [] {
-        std::array<double, 2 * Terms> result{};
-        double factorial = 1.0;
-        for (int i = 0; i < 2 * Terms; factorial *= ++i)
-            result[i] = (i / 2 % 2 == 0 ? 1.0 : -1.0) / factorial;
-        return result;
-    }();
-    const Four square = angle * angle;
-    Four cosine = Four::splat(coefficients[2 * Terms - 2]), sine = Four::splat(coefficients[2 * Terms - 1]);
-    for (int i = 2 * Terms - 4; i >= 0; i -= 2) {
-        cosine = multiply_add(cosine, square, Four::splat(coefficients[i]));
-        sine = multiply_add(sine, square, Four::splat(coefficients[i + 1]));
-    }
-    return {cosine, angle * sine};
-}
-
 // What WIDTH lanes keep of their rays.
 struct LaneGroup {
     Vector<Four> start, way;
     Across<Four> beside;
     Four roll, psi;        // of a point of the flank
-    Frame<Four> frame;     // of the flank there
+    FlankPoint<Four> at;   // there
     NewtonStep<Four> step; // from there
     Four next_roll, next_psi;
     Four length;            // where the step leads along the ray, m
-    Four cosine;            // of the ray with the flank's normal
     Four has_ray, is_going; // 1 or 0
 };
 
@@ -148,7 +128,7 @@ class SideBySide {
 
     // Newton's step from the frame that the ray before has met.
     static void step_from_last(LaneGroup& group) {
-        group.step = newton_step(group.start, group.beside, group.frame);
+        group.step = newton_step(group.start, group.beside, group.at.frame);
     }
 
     void start(int k) {
@@ -159,20 +139,20 @@ class SideBySide {
             go_on_from(k, group.roll[at] - first, group.psi[at] - second);
         } else {
             queues[k].met_before = false;
-            start_at_section(k);
+            start_at_height(k);
         }
     }
 
-    // At the flank's point of the generating section that the ray's start lies in.
-    void start_at_section(int k) {
+    // Near the flank's point at the radius and the height of the ray's start.
+    void start_at_height(int k) {
         const LaneGroup& group = group_of(k);
+        const Guess& guess = blank.flank.guess;
         const int at = k % WIDTH;
         const double x = group.start.x[at], y = group.start.y[at], z = group.start.z[at];
-        const double radius = std::min(std::max(std::sqrt(x * x + y * y), blank.inner), blank.outer);
-        const double cosine = blank.base / (blank.ratio * radius);
-        const double sine = std::sqrt(std::max(1 - cosine * cosine, 1e-12));
-        const double roll = ((blank.lift - z) / blank.base - cosine) / sine;
-        go_on_from(k, std::min(std::max(roll, 0.0), 1.2 * blank.tip_roll), std::atan2(sine, cosine));
+        const double radius = std::clamp(std::sqrt(x * x + y * y), blank.inner, blank.outer);
+        const double along = radius - guess.radius;
+        const double down = std::clamp(blank.tip.at(radius) - z, 0.0, guess.depth);
+        go_on_from(k, Guess::at(guess.roll, along, down), Guess::at(guess.psi, along, down));
     }
 
     void step_until_few_are_left() {
@@ -195,19 +175,16 @@ class SideBySide {
     // The flank's frames where all lanes go on, and Newton's steps from there, no longer than allowed.
     void take_newton_step(LaneGroup& group) const {
         const Four roll = group.next_roll, psi = group.next_psi;
-        const Turn<Four> turn = turn_by_series(gear_turn(blank, roll, psi)), slope = turn_by_series(psi);
-        const Frame<Four> frame = flank_frame(blank, roll, turn, slope);
-        const NewtonStep<Four> step = newton_step(group.start, group.beside, frame);
+        group.at = flank_point(blank.flank, roll, psi);
+        const NewtonStep<Four> step = newton_step(group.start, group.beside, group.at.frame);
         const Four limit = Four::splat(LARGEST_STEP);
         const Four part = limit / larger(larger(absolute(step.first), absolute(step.second)), limit);
         group.roll = roll;
         group.psi = psi;
-        group.frame = frame;
         group.step = step;
         group.next_roll = roll - part * step.first;
         group.next_psi = psi - part * step.second;
         group.length = dot(step.end, group.way);
-        group.cosine = facing(turn, slope, group.way);
         group.is_going = is_going(group);
     }
 
@@ -241,13 +218,15 @@ class SideBySide {
         const int at = k % WIDTH;
         const double roll = group.roll[at] - group.step.first[at],
                      psi = group.psi[at] - group.step.second[at];
-        // beyond a quarter turn the series are no cosine and sine
-        const double largest_angle = std::max(std::fabs(psi), std::fabs(gear_turn(blank, roll, psi)));
-        const bool met =
-            group.step.off_squared[at] < NEGLIGIBLE * NEGLIGIBLE && largest_angle < 0.5 * std::numbers::pi;
-        const bool hit = met && group.cosine[at] < 0 && std::fabs(group.length[at]) < rays.search_radius;
+        const double place = group.at.place[at] - group.step.second[at] * group.at.place_slope[at];
+        // for larger angles the series are no cosine and sine
+        const bool is_small = std::fabs(psi) < 0.5 * std::numbers::pi &&
+                              std::fabs(gear_turn(blank.flank, roll, psi, place)) < SMALL;
+        const bool met = group.step.off_squared[at] < NEGLIGIBLE * NEGLIGIBLE && is_small;
+        const bool hit =
+            met && std::fabs(group.length[at]) < rays.search_radius && faces_the_tooth(group, at);
         if (hit) {
-            write(k, roll, psi);
+            write(k, roll, psi, place);
         } else {
             send_anywhere(k);
         }
@@ -262,7 +241,16 @@ class SideBySide {
         return is_done;
     }
 
-    void write(int k, double roll, double psi) {
+    // Whether a lane's ray comes from outside.
+    bool faces_the_tooth(const LaneGroup& group, int at) const {
+        const auto one = [&](const Vector<Four>& all) {
+            return Vector<double>{all.x[at], all.y[at], all.z[at]};
+        };
+        const Frame<Four>& frame = group.at.frame;
+        return facing(blank.flank, {one(frame.point), one(frame.by_first), {}}, one(group.way)) < 0;
+    }
+
+    void write(int k, double roll, double psi, double place) {
         const LaneGroup& group = group_of(k);
         const int at = k % WIDTH;
         const Index ray = queues[k].ray;
@@ -270,7 +258,7 @@ class SideBySide {
         const Vector<double> point{points.x[at], points.y[at], points.z[at]};
         const double radius = radius_of(point);
         hits.continued[ray] = group.length[at];
-        if (!on_flank(blank, radius, roll, point.z)) return;
+        if (!on_flank(blank, radius, roll, point.z, place)) return;
         hits.gap[ray] = group.length[at];
         hits.u[ray] = roll;
         hits.v[ray] = psi;

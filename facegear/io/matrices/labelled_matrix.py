@@ -19,7 +19,7 @@ class MatrixFault(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Labelled:
+class LabelledMatrix:
     """A square matrix and what its rows are.
 
     Attributes
@@ -61,14 +61,14 @@ class Labelled:
         """Number n of rows."""
         return int(self.node.size)
 
-    def in_order_of(self, other: "Labelled") -> Any:
-        """Return the matrix with the rows of another one, in its order.
+    def in_order_of(self, reference: "LabelledMatrix") -> Any:
+        """Return the matrix with the rows of the reference, in its order.
 
         Rows that this matrix lacks are zero, as those of motions without mass.
 
         Parameters
         ----------
-        other : Labelled
+        reference : LabelledMatrix
             The matrix whose rows count.
 
         Returns
@@ -79,12 +79,12 @@ class Labelled:
         Raises
         ------
         MatrixFault
-            If this matrix has a row that the other one lacks.
+            If this matrix has a row that the reference lacks.
         """
-        if np.array_equal(self.node, other.node) and np.array_equal(self.direction, other.direction):
+        if np.array_equal(self.node, reference.node) and np.array_equal(self.direction, reference.direction):
             return self.matrix
         number_of_row = {
-            row: number for number, row in enumerate(zip(other.node, other.direction, strict=True))
+            row: number for number, row in enumerate(zip(reference.node, reference.direction, strict=True))
         }
         at = np.array(
             [number_of_row.get(row, -1) for row in zip(self.node, self.direction, strict=True)], np.int64
@@ -94,8 +94,11 @@ class Labelled:
             raise MatrixFault(
                 f"it has dof {self.direction[first]} of node {self.node[first]}, which the stiffness lacks"
             )
-        moved = self.matrix.tocoo()
-        return sparse.csc_array((moved.data, (at[moved.row], at[moved.col])), shape=(other.size, other.size))
+        coordinates = self.matrix.tocoo()
+        return sparse.csc_array(
+            (coordinates.data, (at[coordinates.row], at[coordinates.col])),
+            shape=(reference.size, reference.size),
+        )
 
 
 def from_entries(
