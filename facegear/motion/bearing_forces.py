@@ -9,9 +9,9 @@ import pandas as pd
 from facegear.arrays import Array, Integers, Mask
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, shaft_bearing_loads, tilting_moments
 from facegear.machine.static_gears import at_rest
-from facegear.machine.statics import static_bearing_forces
+from facegear.machine.statics import mean_equilibrium, static_bearing_forces
 from facegear.motion.integrator.reduction import Reduction
 from facegear.motion.steady_state.response import SteadyState
 from facegear.motion.steady_state.simulate import Model
@@ -209,8 +209,10 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
+        still = at_rest(machine)
+        tilting = tilting_moments(still, mean_equilibrium(still)) if machine.layout.kind else None
         static_forces = np.concatenate(
-            [static_forces, shaft_bearing_loads(line, static_forces)[..., :3]], axis=1
+            [static_forces, shaft_bearing_loads(line, static_forces, tilting)[..., :3]], axis=1
         )
     dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
     statistics = moments(
