@@ -2,7 +2,7 @@
 
 import numpy as np
 from public_teeth import public_design
-from random_families import SEED, random_family, random_pose, with_possible_face
+from random_families import SEED, random_errors, random_family, with_possible_face
 
 from facegear.errors import GeometryError
 from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
@@ -58,7 +58,7 @@ def random_pairs(count: int) -> list[PairDesign]:
     rng, pairs = np.random.default_rng(SEED), []
     while len(pairs) < count:
         family = random_family(rng)
-        random_pose(rng, family.rack.normal_module)
+        random_errors(rng, family.rack.normal_module)
         try:
             family = with_possible_face(family)
             check_family(family)
