@@ -63,7 +63,7 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
         case: [*_geometry(case, cases), machine_findings(values)] for case, values in cases.items()
     }
     by_case = {
-        case: [*_refused_teeth(cases[case], cases), *(line for part in parts for line in part.failures)]
+        case: [*refused_teeth(cases[case], cases), *(line for part in parts for line in part.failures)]
         for case, parts in parts_by_case.items()
     }
     remarks = {
@@ -79,8 +79,21 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
     return CheckedConfig(tuple(cases), tuple(_lines(by_case)), lines)
 
 
-def _refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """Return a line for each key by which the teeth are of a kind that stages of a run cannot take yet."""
+def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Find the keys by which the teeth of a case are of a kind that stages of its run cannot take yet.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the case.
+    cases : mapping
+        Plain values of all cases of its config by id.
+
+    Returns
+    -------
+    list of str
+        One line for each key, with its value, what is allowed and the first stage that refuses it.
+    """
     case = Case(values, cases)
     wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
     names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])

@@ -221,6 +221,7 @@ def _respond(support: Support, motion: Array) -> tuple[Array, Array]:
     """Return force (K, 5) and tangent (K, 5, 5) of a bearing at motions (K, 5) of its inner ring."""
     bearing = support.bearing
     if isinstance(bearing, np.ndarray):
-        return motion @ bearing, np.broadcast_to(bearing, (len(motion), MOTIONS, MOTIONS))
+        matrix = support.factor * bearing
+        return motion @ matrix, np.broadcast_to(matrix, (len(motion), MOTIONS, MOTIONS))
     response = respond(bearing, motion)
-    return response.force, response.stiffness
+    return support.factor * response.force, support.factor * response.stiffness

@@ -7,7 +7,8 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity

@@ -10,15 +10,9 @@ import numpy as np
 
 from facegear.arrays import Array, Arrays
 from facegear.build.casing import machine_casing
-from facegear.build.machine_layout import (
-    ToothNumbers,
-    layout,
-    nominal_force,
-    single_parts,
-    stepped_shaft,
-    torsional_spring,
-)
+from facegear.build.machine_layout import layout, nominal_force, single_parts, stepped_shaft, torsional_spring
 from facegear.build.rolling import nominal_state, rolling_shaft
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation

@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from facegear.arrays import Array, Arrays
 from facegear.build.lumped_model import machine
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics, fit_harmonics, stack_series
 from facegear.lubrication.columns import EXCITATION_COLUMNS

@@ -4,18 +4,16 @@ The one place where that section and the tooth numbers of section `tooth_pair` m
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import pi
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from facegear.build.rolling import nominal_state
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 from facegear.machine.mean_load import body_on_tangent
-from facegear.machine.mesh_frames import ToothKind
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.schema.bodies import (
     LIKE_ALL_GEARS,
@@ -28,149 +26,11 @@ from facegear.schema.bodies import (
 )
 from facegear.schema.gear_body import MaterialSection
 from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
-from facegear.schema.tooth_pair import flank_angles_deg
 from facegear.schema.transmission import PinionPlace, Transmission
 from facegear.sharing.groups import load_groups, split_groups
-from facegear.teeth.design import PairDesign
-from facegear.teeth.tooth_family import Rack
-
-KIND = ("helix_angle_deg", "taper_angle_deg", "shaft_angle_deg", "offset_mm")
-"""Keys of the tooth pair that make teeth other than spur teeth at right angles."""
 
 LEAST_FORCE = 100.0
 """Force at which the rolling bearings of a machine without torque are taken at first, N."""
-
-
-@dataclass(frozen=True)
-class ToothNumbers:
-    """Numbers of the tooth pair that the lumped model needs.
-
-    pinion_arm: torque on the pinion over the force along the drive flank's normal, m, the base radius of spur
-    teeth. pressure_angle: of the drive flank in the normal section, rad. kind: what else there is to know of
-    teeth that are not spur teeth at right angles.
-    """
-
-    pinion_teeth: int
-    gear_teeth: int
-    pinion_arm: float
-    pressure_angle: float
-    kind: ToothKind | None = None
-
-    @property
-    def pitch_radius(self) -> float:
-        """Pitch radius of the pinion, m."""
-        if self.kind is not None:
-            return self.kind.pitch_radius
-        return self.pinion_arm / float(np.cos(self.pressure_angle))
-
-    @classmethod
-    def of_config(cls, values: Mapping[str, Any]) -> Self:
-        """Return the tooth numbers from plain config values.
-
-        Parameters
-        ----------
-        values : Mapping[str, Any]
-            Section `tooth_pair`, or its keys TEETH and KIND alone.
-
-        Returns
-        -------
-        Self
-            Tooth numbers in SI units.
-        """
-        drive, coast = flank_angles_deg(values["pressure_angle_deg"])
-        numbers = {key: values[key] for key in ("pinion_teeth", "face_gear_teeth", "module_mm")}
-        spur = cls.of_teeth(**numbers, pressure_angle_deg=drive)
-        helix, taper, shaft, offset = (values.get(key) for key in KIND)
-        if not helix and not taper and not offset and shaft in (None, 90.0) and coast == drive:
-            return spur
-        degrees = coast, helix or 0.0, taper or 0.0
-        coast_angle, helix_angle, taper_angle = (float(np.radians(angle)) for angle in degrees)
-        rack = Rack(1e-3 * values["module_mm"], (spur.pressure_angle, coast_angle), helix_angle, taper_angle)
-        shaft_angle = pi / 2 if shaft in (None, 90.0) else float(np.radians(shaft))
-        return spur.with_kind(
-            ToothKind(
-                spur.pinion_teeth,
-                spur.gear_teeth,
-                rack,
-                shaft_angle,
-                1e-3 * (offset or 0.0),
-                _middle(values),
-            )
-        )
-
-    @classmethod
-    def of_design(cls, design: PairDesign) -> Self:
-        """Return the tooth numbers of a pair.
-
-        Parameters
-        ----------
-        design : PairDesign
-            Pair of gears.
-
-        Returns
-        -------
-        Self
-            Tooth numbers in SI units.
-        """
-        teeth = design.pinion.teeth, design.face_gear.teeth
-        numbers = cls(*teeth, design.normal_arm, design.pressure_angle)
-        if design.is_spur:
-            return numbers
-        axes = design.shaft_angle, design.offset, design.middle
-        return numbers.with_kind(ToothKind(*teeth, design.family.rack, *axes))
-
-    def with_kind(self, kind: ToothKind) -> Self:
-        """Return the numbers of teeth that are not spur teeth at right angles.
-
-        Parameters
-        ----------
-        kind : ToothKind
-            The teeth.
-
-        Returns
-        -------
-        Self
-            The same numbers with this kind and its arm.
-        """
-        return replace(self, kind=kind, pinion_arm=kind.normal_arms[0])
-
-    @classmethod
-    def of_teeth(
-        cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
-    ) -> Self:
-        """Return the tooth numbers of spur teeth from the values of the keys TEETH.
-
-        Parameters
-        ----------
-        pinion_teeth : int
-            Number of teeth of each pinion.
-        face_gear_teeth : int
-            Number of teeth of each face gear.
-        module_mm : float
-            Module, mm.
-        pressure_angle_deg : float
-            Pressure angle, deg.
-
-        Returns
-        -------
-        Self
-            Tooth numbers, base radius of the pinion m N1 cos(alpha) / 2 (m) and pressure angle alpha
-            (rad).
-        """
-        angle = float(np.radians(pressure_angle_deg))
-        base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
-        return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
-
-
-def _middle(values: Mapping[str, Any]) -> float | None:
-    """Return the place of the middle of the pinion's face along its axis, m: its own, or the gear's mean
-    radius; None where section `tooth_pair` has no bodies.
-    """
-    pinion, gear = values.get("pinion"), values.get("face_gear")
-    if pinion is None or gear is None:
-        return None
-    middle = pinion.get("middle_mm")
-    return 1e-3 * (0.5 * (gear["inner_radius_mm"] + gear["outer_radius_mm"]) if middle is None else middle)
 
 
 def lumped_sections(
@@ -184,7 +44,7 @@ def lumped_sections(
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------
@@ -202,7 +62,7 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------

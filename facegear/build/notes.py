@@ -7,7 +7,8 @@ import numpy as np
 
 from facegear.build.checks import geometric_backlash
 from facegear.build.lumped_model import LumpedParts, half_backlash, lumped_parts
-from facegear.build.machine_layout import ToothNumbers, lumped_sections
+from facegear.build.machine_layout import lumped_sections
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
 from facegear.machine.assembly import Assembly, assembly, interference_depths

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import pi, radians
-from operator import attrgetter
 from typing import Any
 
 from pydantic import Field, model_validator
@@ -12,7 +11,7 @@ from facegear.build.flanks import Teeth, check_flanks, common_flanks, difference
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.contact.options import ContactPlan
 from facegear.contact.resolution import along_the_ellipse, estimated_memory
-from facegear.errors import ConfigError, GeometryError, NotConverged
+from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import BODIES, Body
 from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.contact import Contact, Mesh
@@ -37,7 +36,6 @@ from facegear.teeth.design import (
     PinionGeometry,
     Shaper,
 )
-from facegear.teeth.family_limits import check_family
 from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.surfaces import flank_face
@@ -124,34 +122,11 @@ class ToothPair(Section):
             refuse(absent_bodies[0], None, "given: pinion, face_gear and shaper go together")
         nominal = _nominal(self)
         try:
-            check(nominal) if nominal.is_spur else _check_family(self, nominal)
+            check(nominal)
         except NotConverged as error:
             refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
         for body, section, teeth in _measured_bodies(self):
             check_flanks(section, f"{body}.flanks", flank_face(nominal, body), teeth)
-
-
-FAMILY_KEYS = {
-    "inner radius of the face": "face_gear.inner_radius_mm",
-    "outer radius of the face": "face_gear.outer_radius_mm",
-    "tip land of the face gear": "face_gear.addendum_modules",
-    "tip land of the pinion": "pinion.addendum_modules",
-    "tip land of the shaper": "shaper.addendum_modules",
-    "root land of the face gear": "shaper.addendum_modules",
-    "shaper addendum": "shaper.addendum_modules",
-}
-"""Keys of section `tooth_pair` by the words of `check_family`."""
-
-
-def _check_family(section: "ToothPair", design: PairDesign) -> None:
-    """Refuse teeth of any kind whose face lies beyond its limits, or whose lands vanish, by key."""
-    try:
-        check_family(design.family)
-    except GeometryError as error:
-        key = FAMILY_KEYS[error.quantity]
-        is_land = "land" in error.quantity
-        requirement = f"less: the {error.quantity} would be {1e3 * float(str(error.value)):.3f} mm wide"
-        refuse(key, attrgetter(key)(section), requirement if is_land else error.requirement)
 
 
 def pair_design(section: ToothPair) -> PairDesign:

@@ -10,7 +10,8 @@ from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 from facegear.build.config import Config
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError, FacegearError, plain_reason
 from facegear.io.atomic import atomic_path
 from facegear.machine.layout import Body

@@ -267,9 +267,33 @@ def _add_gear(row: Array, layout: Layout, frame: FlankFrame, mesh: tuple[int, in
     row[gear + 3] = -layout.gear_arm * frame.arm
     if g in layout.first_tilts:
         below = getattr(layout.gears[g].body.tilt, "below", 0.0)
-        about_tangent, _, about_outwards = frame.gear_moment(layout.gears[g].sign * below)
-        tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
-        row[tilts] = -(about_tangent * along + about_outwards * away)
+        row[layout.first_tilts[g] : layout.first_tilts[g] + 2] = tilt_row(layout, frame, mesh, below)
+
+
+def tilt_row(layout: Layout, frame: FlankFrame, mesh: tuple[int, int], below: float) -> Array:
+    """Return the derivative of the deflection of a flank by tilts of its gear about x and y.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+    frame : FlankFrame
+        Line of contact of the flank.
+    mesh : tuple of int
+        Numbers of its pinion and gear.
+    below : float
+        Distance of the point about which the gear tilts from the pitch plane, away from the pinions, m.
+
+    Returns
+    -------
+    (2,) array
+        m/rad.
+    """
+    pinion, gear = mesh
+    along = np.array([np.cos(layout.angles[pinion]), np.sin(layout.angles[pinion])])
+    away = np.array([along[1], -along[0]])
+    about_tangent, _, about_outwards = frame.gear_moment(layout.gears[gear].sign * below)
+    return -(about_tangent * along + about_outwards * away)
 
 
 KINEMATICS: Mapping[str, Kinematics] = {

@@ -291,12 +291,12 @@ class Layout:
         (...) array
             N m, of the sign of the force.
         """
-        arms = self.pinion_arm if self.back_arm == 1.0 else self._arms_of(forces)
-        return np.asarray(forces * arms)
+        return np.asarray(forces * (self.pinion_arm * np.where(forces < 0.0, self.back_arm, 1.0)))
 
-    def _arms_of(self, forces: Array) -> Array:
-        """Return the arm of each force, m: that of the drive flank, or of the back flank if negative."""
-        return np.where(forces < 0.0, self.pinion_arm * self.back_arm, self.pinion_arm)
+    @cached_property
+    def pinion_middle(self) -> float:
+        """Place of the middles of the pinions' faces along their axes, m; of spur teeth at the meshes."""
+        return self.mesh_radius if self.kind is None else self.kind.family.middle
 
     @cached_property
     def base_pitch(self) -> float:

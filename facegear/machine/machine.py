@@ -153,6 +153,8 @@ class Machine:
             object.__setattr__(self, "imperfections", perfect(self.layout))
         if self.forces is None:
             object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
+        if self.casing is not None and self.casing.layout is not self.layout:
+            object.__setattr__(self, "casing", replace(self.casing, layout=self.layout))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
         for quantity, values in (

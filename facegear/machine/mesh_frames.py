@@ -147,6 +147,12 @@ class ToothKind:
         """Motion of the pinion against the upper gear."""
         return RelativeMotion(self.pinion_teeth / self.gear_teeth, self.shaft_angle, self.offset)
 
+    @property
+    def lean(self) -> Array:
+        """Rotation (3, 3) from tangent, gear axis and outwards to the pinion's x, y, z."""
+        sine, cosine = self._motion.sine, self._motion.cosine
+        return np.array([[1.0, 0.0, 0.0], [0.0, sine, -cosine], [0.0, cosine, sine]])
+
     def pitch_height(self, sign: float) -> float:
         """Return how far the pitch plane of a gear's meshes lies from where the pinions' axes pass the
         gear's, towards the gear.

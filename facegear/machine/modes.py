@@ -15,9 +15,9 @@ import scipy.linalg
 
 from facegear.arrays import AnyArray, Array
 from facegear.errors import NotConverged
-from facegear.machine.casing import CASING, CASING_MODE
+from facegear.machine.casing_coordinates import CASING, CASING_MODE
 from facegear.machine.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
-from facegear.machine.linear_model import LinearModel
+from facegear.machine.linear_model import LinearModel, massive_motions
 
 EQUAL = 1e-8
 """Difference of neighbouring frequencies, over the largest of all, up to which they count as equal."""
@@ -82,7 +82,11 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
     stiffness = linear.stiffness + meshes
     if linear.spin is not None and speed != 0.0:
         return _turning(linear, stiffness, speed)
-    if linear.masses is None:
+    if (motions := massive_motions(linear)) is not None:
+        mass = motions.T @ linear.mass @ motions
+        omega_squared, shapes = scipy.linalg.eigh(motions.T @ stiffness @ motions, mass)
+        shapes = motions @ shapes
+    elif linear.masses is None:
         omega_squared, shapes = scipy.linalg.eigh(stiffness, linear.mass)
     else:
         root = np.sqrt(linear.masses)

@@ -128,11 +128,11 @@ class RollingStates:
         """
         for name in ("coordinates", "beyond", "flanks", "gradient", "size", "rounding"):
             getattr(self, name)[at] = getattr(new_states, name)
-        for coordinates, new in zip(self.inner, new_states.inner, strict=True):
-            coordinates[at] = new
-        for response, new in zip(self.responses, new_states.responses, strict=True):
+        for inner_coordinates, new_coordinates in zip(self.inner, new_states.inner, strict=True):
+            inner_coordinates[at] = new_coordinates
+        for response, new_response in zip(self.responses, new_states.responses, strict=True):
             for part in fields(response):
-                getattr(response, part.name)[at] = getattr(new, part.name)
+                getattr(response, part.name)[at] = getattr(new_response, part.name)
 
     def select(self, at: Integers) -> "RollingStates":
         """Return copies of the positions `at`.
@@ -328,7 +328,7 @@ def _step(
         -solution[:, :, -1] - (solution[:, :, :-1] @ step[:, element.at, None])[..., 0]
         for element, solution in zip(problem.elements, eliminated, strict=True)
     ]
-    return step, inner
+    return np.asarray(step), inner
 
 
 def _add_ring_tangents(linear: LinearModel, coordinates: Array, matrix: Array) -> None:

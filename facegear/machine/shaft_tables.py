@@ -9,6 +9,7 @@ import scipy.linalg
 
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft
+from facegear.machine.casing_coordinates import casing_motion
 from facegear.machine.drive_line import DriveLine, TurningMass
 from facegear.machine.machine import Machine
 from facegear.machine.rolling_equilibria import ShaftLoads
@@ -41,6 +42,7 @@ def shaft_bearing_loads(
     forces: Array,
     moments: Mapping[int, Array] | None = None,
     shafts: Mapping[int, ShaftLoads] | None = None,
+    strains: Array | None = None,
 ) -> Array:
     """Return the loads of the shafts on their bearings, from the balance of each elastic shaft.
 
@@ -57,6 +59,8 @@ def shaft_bearing_loads(
         out.
     shafts : mapping of int to ShaftLoads, or None
         Shafts on rolling bearings at the same K equilibria by the numbers of pinions.
+    strains : (K, bearings, 5) array or None
+        Loads from seats that strain a shaft, as `ring_strains` returns them; None for seats that stand still.
 
     Returns
     -------
@@ -70,7 +74,28 @@ def shaft_bearing_loads(
             continue
         about = (moments or {}).get(pinion, np.zeros((len(forces), 2)))
         loads.append(seat.bearing_loads(np.concatenate([forces[:, pinion], about], axis=1)))
-    return np.concatenate(loads, axis=1)
+    whole = np.concatenate(loads, axis=1)
+    return whole if strains is None else whole + strains
+
+
+def ring_strains(machine: Machine, displacements: Array) -> Array | None:
+    """Return the loads of shafts on their bearings that come from the motions of seats against each other.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, n) array
+        Displacements of all of its coordinates, m and rad.
+
+    Returns
+    -------
+    (K, bearings, 5) array or None
+        N and N m, in the order of `bearing_names`; None for a machine without casing or shafts.
+    """
+    if machine.casing is None or machine.drive_line is None:
+        return None
+    return machine.casing.strain_loads(machine.drive_line, casing_motion(machine.linear, displacements))
 
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
@@ -125,6 +150,9 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
         displacement = seat.shaft.compliance[:, :3] @ forces[pinion]
         if pinion in at_rest.shafts:
             displacement = at_rest.shafts[pinion].pinion[0]
+        elif machine.casing is not None:
+            motion = casing_motion(machine.linear, at_rest.displacements[0])
+            displacement = displacement + machine.casing.base_motions(pinion) @ motion
         rows.append((line.layout.pinions[pinion].name, *square, *(1e6 * displacement)))
     stiffness = [f"stiffness_{axis}_n_per_m" for axis in "xyz"]
     return pd.DataFrame(
@@ -135,7 +163,7 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 def deflection_table(
     machine: Machine, line: DriveLine, at_rest: Equilibria, shafts: Mapping[int, Shaft | RollingShaft]
 ) -> pd.DataFrame:
-    """Return the deflection along each shaft under the mean torques.
+    """Return the deflection along each shaft under the mean torques, on a casing against its seats.
 
     Parameters
     ----------
@@ -196,7 +224,10 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
     pd.DataFrame
         One row a bearing: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
     """
-    loads = shaft_bearing_loads(line, bearing_forces(machine, at_rest), shafts=at_rest.shafts)[0]
+    strains = ring_strains(machine, at_rest.displacements)
+    loads = shaft_bearing_loads(
+        line, bearing_forces(machine, at_rest), shafts=at_rest.shafts, strains=strains
+    )[0]
     rows = [
         (line.layout.pinions[pinion].name, letter, *load, np.hypot(*load[:2]))
         for (pinion, letter), load in zip(bearing_names(line), loads, strict=True)

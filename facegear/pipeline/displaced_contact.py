@@ -8,8 +8,9 @@ from pathlib import Path
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
 from facegear.build.plans import contact_plan
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair, pair_design
 from facegear.contact.analysis import met_contacts
 from facegear.contact.gear_flank import every_flank_from_arrays

@@ -2,11 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from facegear.schema.base import Section, refuse, require_all
 
-Direction = Annotated[tuple[float, float, float], Field(min_length=3, max_length=3)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Direction = tuple[Coordinate, Coordinate, Coordinate]
+LARGEST_NODE = 999_999_999
+"""Largest number of a node that finite-element programs write."""
+Node = Annotated[int, Field(ge=1, le=LARGEST_NODE)]
 SQUARE = 1e-6
 """Cosine between two axes up to which they count as perpendicular."""
 
@@ -36,10 +40,8 @@ class CasingAxes(Section):
 class CasingPlace(Section):
     """Nodes that move as one: a node with rotations, or a patch of several that is rigid."""
 
-    node: int | None = Field(None, ge=1, description="a node with six dofs")
-    nodes: tuple[Annotated[int, Field(ge=1)], ...] = Field(
-        (), max_length=100_000, description="a rigid patch of nodes"
-    )
+    node: Node | None = Field(None, description="a node with six dofs")
+    nodes: tuple[Node, ...] = Field((), max_length=100_000, description="a rigid patch of nodes")
     patch: str | None = Field(
         None, min_length=1, max_length=60, description="a rigid patch: its name in column patch of `nodes`"
     )
@@ -97,7 +99,7 @@ class CasingSensor(Section):
     """A point whose vibration is told."""
 
     name: str = Field(min_length=1, max_length=40, description="names it in tables and figures")
-    node: int = Field(ge=1, description="a node with motions along x, y and z")
+    node: Node = Field(description="a node with motions along x, y and z")
     direction: Direction = Field((0.0, 0.0, 1.0), description="in the axes of the file")
 
     @model_validator(mode="after")
@@ -108,7 +110,14 @@ class CasingSensor(Section):
         return self
 
 
-Seat = Annotated[int, Field(ge=1)] | CasingPlace
+def _single_node(value: object) -> object:
+    """Return the place of a seat that is given by the number of its node alone, and lists as tuples."""
+    if isinstance(value, dict):
+        return {key: tuple(part) if isinstance(part, list) else part for key, part in value.items()}
+    return {"node": value} if isinstance(value, int) else value
+
+
+Seat = Annotated[CasingPlace, BeforeValidator(_single_node, json_schema_input_type=Node | CasingPlace)]
 
 
 class CasingSection(Section):
@@ -184,19 +193,3 @@ class CasingSection(Section):
     def files(self) -> dict[str, str | None]:
         """Names of the files by what they hold."""
         return {key: getattr(self, key) for key in ("stiffness", "mass", "damping", "nodes", "dofs")}
-
-    def location(self, seat: str) -> CasingPlace:
-        """Return the nodes of a seat.
-
-        Parameters
-        ----------
-        seat : str
-            Name of the seat.
-
-        Returns
-        -------
-        CasingPlace
-            Its node or patch.
-        """
-        location = self.seats[seat]
-        return CasingPlace(node=location) if isinstance(location, int) else location

@@ -1,7 +1,7 @@
 """The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -39,6 +39,25 @@ def flank_angles_deg(angles: "float | FlankAngles | Mapping[str, float]") -> tup
     if isinstance(angles, Mapping):
         return angles["drive"], angles["coast"]
     return angles, angles
+
+
+def face_middle_mm(tooth_pair: Mapping[str, Any]) -> float | None:
+    """Return the place of the middle of the pinion's face along its axis.
+
+    Parameters
+    ----------
+    tooth_pair : mapping
+        Plain values of section `tooth_pair`.
+
+    Returns
+    -------
+    float or None
+        Key `pinion.middle_mm`, else the mean radius of the gear's face, mm; None for a pair without bodies.
+    """
+    pinion, gear = tooth_pair["pinion"], tooth_pair["face_gear"]
+    if pinion is not None and pinion["middle_mm"] is not None:
+        return float(pinion["middle_mm"])
+    return None if gear is None else float(0.5 * (gear["inner_radius_mm"] + gear["outer_radius_mm"]))
 
 
 class ReliefSection(Section):

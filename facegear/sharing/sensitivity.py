@@ -225,7 +225,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     """Return a simplified machine with other kinematics, for the bearing scan.
 
     It keeps mesh errors, backlash, stiffness and balanced torques, and loses tilt of the gears, drive
-    line and all other errors. Elastic bodies stay only if the kinematics do.
+    line and all other errors. Elastic bodies and a casing stay only if the kinematics do.
     """
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
@@ -245,7 +245,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
         machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=line
     )
     if kinematics is not layout.kinematics:
-        return replace(machine_with_layout, bodies=None, softening=None)
+        return replace(machine_with_layout, bodies=None, softening=None, casing=None)
     if isinstance(machine.bodies, ElasticGears):
         return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
     return machine_with_layout

@@ -13,8 +13,8 @@ from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
 from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
 from facegear.build.machine import TablesOf
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.plans import contact_plan, stiffness_request
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, contact_setup, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank, gear_flank

@@ -179,8 +179,13 @@ def face_bounds(family: ToothFamily, thinnest: float, overhang: float = 0.0) -> 
     is_sound = (np.stack(list(left.values())) > 0.0).all(axis=0)
     if not is_sound.any():
         worst = min(left, key=lambda land: float(left[land].max()))
-        gear_addendum = round(family.gear_addendum / family.rack.normal_module, 6)
-        raise GeometryError("face_gear.addendum_modules", gear_addendum, f"less: {worst} at every radius")
+        key, addendum = {
+            "pointed tips": ("face_gear", family.gear_addendum),
+            "no root land": ("shaper", family.shaper_addendum),
+            "pointed pinion": ("pinion", family.pinion_addendum),
+        }[worst]
+        value = round(addendum / family.rack.normal_module, 6)
+        raise GeometryError(f"{key}.addendum_modules", value, f"less: {worst} at every radius")
     nearest = int(np.flatnonzero(is_sound)[np.argmin(np.abs(radii[is_sound] - path))])
     thin = np.flatnonzero(~is_sound)
     before, after = thin[thin < nearest], thin[thin > nearest]

@@ -111,11 +111,11 @@ def box_casing(cubes, size=20.0, **material):
     return whole_casing(stiffness, mass, None, nodes, "mm_t_s"), places
 
 
-def wall_seats(cubes, places, size=20.0, half_width=40.0):
+def wall_seats(cubes, places, size=20.0, half_width=40.0, depth=None):
     """Patches through the walls +X, +Y, -X, -Z, +Z and a base under four corners, as the public case has
     them.
     """
-    half = 0.5 * size * np.array(cubes)
+    half, wall = 0.5 * size * np.array(cubes), size if depth is None else depth
     seats = []
     for name, axis, sign in (
         ("p0", 0, 1),
@@ -125,11 +125,11 @@ def wall_seats(cubes, places, size=20.0, half_width=40.0):
         ("upper gear", 2, 1),
     ):
         low, high = np.full(3, -half_width), np.full(3, half_width)
-        low[axis], high[axis] = sorted((sign * half[axis], sign * (half[axis] - size)))
+        low[axis], high[axis] = sorted((sign * half[axis], sign * (half[axis] - wall)))
         middle = np.zeros(3)
-        middle[axis] = sign * (half[axis] - 0.5 * size)
+        middle[axis] = sign * (half[axis] - 0.5 * wall)
         seats.append(Interface(name, nodes_in(places, low, high), 1e-3 * middle))
-    corner = 2.0 * size
+    corner = min(2.0 * size, 0.5 * half[0])
     base = []
     for x, y in itertools.product((-1, 1), repeat=2):
         low = [min(x * half[0], x * (half[0] - corner)), min(y * half[1], y * (half[1] - corner)), -half[2]]

@@ -36,7 +36,7 @@ MAY_IMPORT = {
     "machine": {"teeth", "meshing", "parts", "bearings", "casing"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
-    "strength": {"teeth", "contact", "machine", "motion", "sharing"},
+    "strength": {"teeth", "contact", "bearings", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
         *("schema", "teeth", "meshing", "contact", "parts", "bearings", "casing", "machine", "motion"),
@@ -52,7 +52,18 @@ MAY_IMPORT = {
     },
     "report": {"schema", "build", "teeth", "meshing", "contact", "machine", "motion", "sharing"},
     "pipeline": {
-        *("schema", "build", "teeth", "meshing", "contact", "parts", "casing", "machine", "motion"),
+        *(
+            "schema",
+            "build",
+            "teeth",
+            "meshing",
+            "contact",
+            "parts",
+            "bearings",
+            "casing",
+            "machine",
+            "motion",
+        ),
         *("sharing", "strength", "lubrication", "studies", "exchange", "report"),
     },
     "door": {"schema", "build", "machine", "exchange", "studies", "pipeline"},

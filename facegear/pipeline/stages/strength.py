@@ -10,8 +10,8 @@ import pandas as pd
 from facegear.arrays import Array, Arrays
 from facegear.build.lumped_model import stiffness_phases
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.strength import duty_bins, rating_request
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ContactSetup, ToothPair, contact_setup, pair
 from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of
 from facegear.errors import ConfigError, FacegearError

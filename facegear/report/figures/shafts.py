@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.number_format import format_number
 from facegear.report.figures.colours import ORANGE, WHITE, grey
 from facegear.report.figures.description import Axis, Figure, Key, Panel

@@ -98,3 +98,13 @@ def test_a_key_that_helps_moves_the_outer_limit_outwards(name, changed, cause):
     before, after = (face_bounds(one, thinnest) for one in (family, changed(family)))
     assert before.outer_cause == cause
     assert after.outer > before.outer + 1e-6
+
+
+def test_where_the_involute_ends_far_out_is_no_inner_limit():
+    """Feet of steep normals fall below the tip again at 891 mm: taken for the start of the involute."""
+    taper, shaft = radians(-3.0), radians(80.0)
+    family = replace(public_design("P2"), shaft_angle=shaft)
+    family = replace(family, rack=replace(family.rack, taper_angle=taper), middle=path_middles(family)[0])
+    bounds = face_bounds(family, 0.0)
+    assert all(np.isnan(start.involute) for start in bounds.starts)
+    assert bounds.inner < float(pitch_line_radius(family, family.middle)) < bounds.outer
