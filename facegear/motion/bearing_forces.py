@@ -214,9 +214,11 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
-        still = mean_equilibrium(machine_at_rest)
-        strains = ring_strains(machine_at_rest, still.displacements)
-        about = tilting_moments(machine_at_rest, still)
+        strains, about = None, None
+        if machine.casing is not None or machine.layout.kind is not None:
+            still = mean_equilibrium(machine_at_rest)
+            strains = ring_strains(machine_at_rest, still.displacements)
+            about = tilting_moments(machine_at_rest, still)
         static_loads = shaft_bearing_loads(line, static_forces, about, strains=strains)
         static_forces = np.concatenate([static_forces, static_loads[..., :3]], axis=1)
     dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
