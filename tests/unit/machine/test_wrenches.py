@@ -33,10 +33,11 @@ from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC, PRINTED_KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Pinion, Role, Side, Tilt
 from facegear.machine.loaded_modes import loaded_modes
-from facegear.machine.machine import Damping, Machine, balanced_torques
+from facegear.machine.machine import Damping, Machine
 from facegear.machine.mesh_phases import place_lags
 from facegear.machine.shaft_tables import load_table, seat_table
 from facegear.machine.statics import bearing_loads, equilibria, mean_equilibrium
+from facegear.machine.torques import balanced_torques
 from facegear.parts.shafts import CondensedShaft
 from facegear.rigid_body import carry_motion
 from facegear.teeth.family_contact import contact_line

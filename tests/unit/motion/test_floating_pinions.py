@@ -14,7 +14,8 @@ from facegear.harmonics import Harmonics
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.imperfections import perfect
 from facegear.machine.layout import Body, FaceGear, Pinion, Role, Side, Tilt
-from facegear.machine.machine import Damping, Machine, OpenFlanks, balanced_torques
+from facegear.machine.machine import Damping, Machine, OpenFlanks
+from facegear.machine.torques import balanced_torques
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import build_model
