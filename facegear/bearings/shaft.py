@@ -1,7 +1,7 @@
 """Shafts on rolling bearings: equilibrium, and what pinion and seats feel of it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,12 +28,16 @@ class Support:
     bearing
         A rolling bearing, or the stiffness (5, 5) of a linear one, N/m, N/rad and N m/rad.
     offset : (5,)
-        Motion of the inner ring against the outer one where neither shaft nor seat moves, m and rad: preload.
+        Motion of the inner ring against the outer one where neither shaft nor seat moves, m and rad: preload,
+        and the opposite of the place of the outer ring.
+    factor
+        By which the energy of the bearing is multiplied, for trials of softer and stiffer ones; 1.
     """
 
     position: float
     bearing: AnyBearing | Array
     offset: Array
+    factor: float = 1.0
 
     def derivatives(self, motion: Array) -> Curvature:
         """Return energy, load and stiffness of the bearing at a motion of its inner ring, in which
@@ -50,12 +54,21 @@ class Support:
             Energy (J), loads on the inner ring (N and N m) and tangent (N/m, N/rad and N m/rad).
         """
         if not isinstance(self.bearing, np.ndarray):
-            return bearing_curve(self.bearing, motion)
-        force = self.bearing @ motion
-        rounding = np.finfo(float).eps * float((np.abs(self.bearing) @ np.abs(motion)).max())
-        return Curvature(
-            0.5 * float(motion @ force), force, self.bearing, float(np.abs(force).max()), rounding
-        )
+            curve = bearing_curve(self.bearing, motion)
+            if self.factor == 1.0:
+                return curve
+            energy, size, rounding = np.array([curve.energy, curve.size, curve.rounding]) * self.factor
+            return Curvature(
+                float(energy),
+                self.factor * curve.gradient,
+                self.factor * curve.matrix,
+                float(size),
+                float(rounding),
+            )
+        matrix = self.factor * self.bearing
+        force = matrix @ motion
+        rounding = np.finfo(float).eps * float((np.abs(matrix) @ np.abs(motion)).max())
+        return Curvature(0.5 * float(motion @ force), force, matrix, float(np.abs(force).max()), rounding)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,10 +131,60 @@ class RollingShaft:
     supports: tuple[Support, ...]
     pinion: float
 
+    def scale(self, factor: float) -> "RollingShaft":
+        """Return the shaft with all stiffness of its bearings and of itself multiplied by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            On the energy, dimensionless.
+
+        Returns
+        -------
+        RollingShaft
+            With the same clearances and preload.
+        """
+        material = replace(self.material, young=factor * self.material.young)
+        supports = tuple(replace(support, factor=factor * support.factor) for support in self.supports)
+        return replace(self, material=material, supports=supports)
+
     @cached_property
     def rigid(self) -> Array:
         """T: motions of the inner rings by those of the pinion's middle on a rigid shaft, (5 bearings, 5)."""
         return np.concatenate([carry_motion(support.position - self.pinion) for support in self.supports])
+
+    def deflections(self, pinion: Array, forces: Array, at: Array) -> Array:
+        """Return the motions of the shaft along its length.
+
+        Parameters
+        ----------
+        pinion : (5,) array
+            Motion of the pinion's middle, m and rad.
+        forces : (bearings, 5) array
+            Loads of the shaft on its bearings, N and N m.
+        at : (n,) array
+            Distances from the shaft's beginning, m.
+
+        Returns
+        -------
+        (n, 5) array
+            x, y, z, tilt_x, tilt_y, m and rad.
+        """
+        positions = np.array([support.position for support in self.supports])
+        relative = self._relative_compliance(np.concatenate([positions, at]))
+        bearings = MOTIONS * positions.size
+        rigid = np.concatenate([carry_motion(float(z) - self.pinion) for z in at])
+        motions = rigid @ pinion - relative[bearings:, :bearings] @ forces.ravel()
+        return np.asarray(motions.reshape(-1, MOTIONS))
+
+    def _relative_compliance(self, at: Array) -> Array:
+        """Return the compliance (5 n, 5 n) of places (n,), m, seen from the pinion, SI units."""
+        blocks = clamped_compliance(self.segments, self.material, np.array([self.pinion, *at]))
+        size = MOTIONS * (at.size + 1)
+        from_beginning = blocks.transpose(0, 2, 1, 3).reshape(size, size)
+        rigid = np.concatenate([carry_motion(float(z) - self.pinion) for z in at])
+        relative = np.concatenate([-rigid, np.eye(size - MOTIONS)], axis=1)
+        return np.asarray(relative @ from_beginning @ relative.T)
 
     @cached_property
     def bending(self) -> Array:
@@ -131,13 +194,9 @@ class RollingShaft:
         Columns are eigenvectors of the compliance C of the rings, seen from the pinion, times the roots
         of their eigenvalues; eigenvalues below RANGE of the largest are left out.
         """
-        at = np.array([self.pinion, *(support.position for support in self.supports)])
-        blocks = clamped_compliance(self.segments, self.material, at)
-        size = MOTIONS * at.size
-        from_beginning = blocks.transpose(0, 2, 1, 3).reshape(size, size)
-        relative = np.concatenate([-self.rigid, np.eye(size - MOTIONS)], axis=1)
         arms = self.arms
-        compliance = relative @ from_beginning @ relative.T * np.outer(arms, arms)
+        positions = np.array([support.position for support in self.supports])
+        compliance = self._relative_compliance(positions) * np.outer(arms, arms)
         values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
         counts = values > RANGE * max(float(values[-1]), 1e-300)
         return np.asarray(vectors[:, counts] * np.sqrt(values[counts]) / arms[:, None])

@@ -196,7 +196,7 @@ def machine_casing(section: Transmission, layout: Layout, arrays: Arrays | None)
         if any(names):
             seats[body], shafts[body] = names, follow_rings(stepped_shaft(shaft))
             along = [bearing.at_mm - shaft.pinion_mm for bearing in shaft.bearings]
-            positions[body] = layout.mesh_radius + 1e-3 * np.array(along)
+            positions[body] = layout.pinion_middle + 1e-3 * np.array(along)
     for number, gear in enumerate(layout.gears):
         if (name := f"{gear.side.value} gear") in mounted.seats:
             seats[len(layout.pinions) + number] = (name,)

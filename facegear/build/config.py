@@ -25,6 +25,7 @@ from facegear.build.checks import (
     with_backlash,
 )
 from facegear.build.elastic_bodies import check_bodies, elastic_gears
+from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
@@ -157,6 +158,14 @@ class Config(Section):
             for spring_owner in (name for name, is_present in springs.items() if is_present):
                 requirement = f"without bearing_stiffness beside {spring_owner}, whose springs it would scale"
                 raise ConfigError("branches.loci.parameters", list(section.loci.parameters), requirement)
+        rolls = self.transmission is not None and any(
+            shaft.is_rolling for shaft in self.transmission.shafts.values()
+        )
+        parameters = section.loci.parameters if section and rolls else ()
+        for name in ("torque", "bearing_stiffness"):
+            if name in parameters:
+                requirement = f"without {name} beside rolling bearings, whose tangent holds at the mean load"
+                raise ConfigError("branches.loci.parameters", list(parameters), requirement)
         if section and not section.from_rpm <= speed <= section.to_rpm:
             requirement = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
             raise ConfigError("dynamics.speed_rpm", speed, requirement)
@@ -185,7 +194,8 @@ class Config(Section):
         elif self.mesh_stiffness.source != "harmonics":
             requirement = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, requirement)
-        if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
+        has_contact = self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication
+        if has_contact and not refused_keys(["contact"], pair.model_dump()):
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             contact = self.contact_used

@@ -10,24 +10,22 @@ import numpy as np
 
 from facegear.arrays import Array, Arrays
 from facegear.build.casing import machine_casing
-from facegear.build.machine_layout import ToothNumbers, layout, single_parts, stepped_shaft, torsional_spring
+from facegear.build.machine_layout import layout, nominal_force, single_parts, stepped_shaft, torsional_spring
+from facegear.build.rolling import nominal_state, rolling_shaft
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation
 from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
-from facegear.machine.layout import Layout, PhaseConvention, mesh_phases
-from facegear.machine.machine import (
-    Damping,
-    FlankTables,
-    Machine,
-    OpenFlanks,
-    balanced_torques,
-    pinion_torques,
-)
+from facegear.machine.layout import Layout
+from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
+from facegear.machine.mean_load import rolling_seat
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
-from facegear.schema.shafts import OUTPUT, TurningMassSection
+from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.schema.transmission import LIKE_ALL_MESHES, Transmission
 from facegear.schema.transmission_error import error_series
 
@@ -78,6 +76,7 @@ def imperfections(
         },
         position=1e-6
         * np.array([(single_part.position_um.x, single_part.position_um.y) for single_part in pinions]),
+        outwards=1e-6 * np.array([single_part.position_um.z for single_part in pinions]),
         bearing_clearance=1e-6 * np.array(clearances),
         clocking=np.array([single_part.clocking_deg for single_part in pinions]) / 360.0 * shape.pinion_teeth,
         pinion_runout=tuple(_runout(single_part.runout or section.pinion.runout) for single_part in pinions),
@@ -404,12 +403,33 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
+            tilt_inertia = _tilt_inertia(shape, number, shaft)
+            seats[number] = _seat(shaft, nominal_force(section, shape.pinion_radius), tilt_inertia)
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
         masses[len(section.pinions) + shape.output] = _turning_masses(chain)
     return DriveLine(shape, seats, masses) if seats or masses else None
+
+
+def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
+    """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
+
+    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
+    half of that about its axis, as a thin disc.
+    """
+    if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
+        return 0.5 * shape.pinions[pinion].body.inertia
+    return shaft.tilt_inertia_kg_m2
+
+
+def _seat(shaft: ShaftSection, force: float, tilt_inertia: float | None) -> Seat:
+    """Return the seat of a pinion with a moment of inertia about a diameter, kg m2, None without tilts;
+    `force`, N, is that at which rolling bearings are taken.
+    """
+    if shaft.is_rolling:
+        return rolling_seat(rolling_shaft(shaft), nominal_state(shaft, force), tilt_inertia)
+    return Seat(condense_shaft(stepped_shaft(shaft)), tilt_inertia)
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:

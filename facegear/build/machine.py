@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from facegear.arrays import Array, Arrays
 from facegear.build.lumped_model import machine
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics, fit_harmonics, stack_series
 from facegear.lubrication.columns import EXCITATION_COLUMNS
@@ -20,6 +20,7 @@ from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.imperfections import from_arrays
 from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import FlankTables, Machine
+from facegear.machine.mean_load import at_mean_load
 from facegear.machine.poses.fixed_point import posed_machine
 from facegear.machine.poses.surface import PoseSurface
 from facegear.machine.static_gears import at_rest
@@ -121,7 +122,7 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     NotConverged
         If the machine has no static equilibrium.
     """
-    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
+    torques = np.abs(machine.layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
     table_torques, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm
@@ -312,8 +313,8 @@ class MachineInputs:
         Returns
         -------
         Machine
-            The lumped machine with mesh law, elastic gears, errors of single teeth, poses and friction,
-            added in this order as far as the inputs hold them.
+            The lumped machine with mesh law, elastic gears, errors of single teeth, poses, tangents of
+            rolling bearings and friction, added in this order as far as the inputs hold them.
 
         Raises
         ------
@@ -340,6 +341,7 @@ class MachineInputs:
         # Friction acts where the loaded bodies stand, so poses come first.
         if self.poses is not None:
             lumped_machine = posed_machine(lumped_machine, PoseSurface.of_arrays(self.poses))
+        lumped_machine = at_mean_load(lumped_machine)
         return lumped_machine if self.friction is None else with_friction(lumped_machine, self.friction)
 
 

@@ -4,14 +4,16 @@ The one place where that section and the tooth numbers of section `tooth_pair` m
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
+from facegear.build.rolling import nominal_state
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
+from facegear.machine.mean_load import body_on_tangent
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.schema.bodies import (
     LIKE_ALL_GEARS,
@@ -22,64 +24,13 @@ from facegear.schema.bodies import (
     SinglePinion,
     TiltSection,
 )
-from facegear.schema.changes import TEETH
 from facegear.schema.gear_body import MaterialSection
 from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
 from facegear.schema.transmission import PinionPlace, Transmission
 from facegear.sharing.groups import load_groups, split_groups
 
-
-@dataclass(frozen=True)
-class ToothNumbers:
-    """Numbers of the tooth pair that the lumped model needs; radii in m, angle in rad."""
-
-    pinion_teeth: int
-    gear_teeth: int
-    pinion_base_radius: float
-    pressure_angle: float
-
-    @classmethod
-    def of_config(cls, values: Mapping[str, Any]) -> Self:
-        """Return the tooth numbers from plain config values.
-
-        Parameters
-        ----------
-        values : Mapping[str, Any]
-            Section `tooth_pair`, or its keys TEETH alone.
-
-        Returns
-        -------
-        Self
-            Tooth numbers in SI units.
-        """
-        return cls.of_teeth(*(values[key] for key in TEETH))
-
-    @classmethod
-    def of_teeth(
-        cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
-    ) -> Self:
-        """Return the tooth numbers from the values of the keys TEETH.
-
-        Parameters
-        ----------
-        pinion_teeth : int
-            Number of teeth of each pinion.
-        face_gear_teeth : int
-            Number of teeth of each face gear.
-        module_mm : float
-            Module, mm.
-        pressure_angle_deg : float
-            Pressure angle, deg.
-
-        Returns
-        -------
-        Self
-            Tooth numbers, base radius of the pinion m N1 cos(alpha) / 2 (m) and pressure angle alpha
-            (rad).
-        """
-        angle = float(np.radians(pressure_angle_deg))
-        base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
-        return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
+LEAST_FORCE = 100.0
+"""Force at which the rolling bearings of a machine without torque are taken at first, N."""
 
 
 def lumped_sections(
@@ -93,7 +44,7 @@ def lumped_sections(
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------
@@ -111,7 +62,7 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------
@@ -156,7 +107,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     """
     radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
-    pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
+    pinion_radius = teeth.pinion_arm if radius_mm is None else 1e-3 * radius_mm
     conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
     return Layout(
         pinions=tuple(
@@ -164,7 +115,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
                 pinion.name,
                 Role(pinion.role),
                 _pitches(pinion, teeth.gear_teeth),
-                _pinion_body(section, pinion),
+                _pinion_body(section, pinion, pinion_radius),
             )
             for pinion in section.pinions
         ),
@@ -177,6 +128,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
         pinion_radius=pinion_radius,
         gear_radius=conjugate if given_mm is None else 1e-3 * given_mm,
         kinematics=KINEMATICS[section.mesh_kinematics],
+        kind=teeth.kind,
     )
 
 
@@ -203,19 +155,41 @@ def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinio
     )
 
 
-def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
+def _pinion_body(section: Transmission, pinion: PinionPlace, radius: float) -> Body:
     """Return mass, inertia and bearing stiffness of a pinion, on its own bearings or on its shaft.
 
     With a shaft the stiffness is the inverse of the shaft's compliance at the pinion, for forces without
-    moment, x and y coupled.
+    moment, x and y coupled. Rolling bearings are taken at `nominal_force`; `radius`: base radius, m.
     """
     single_pinion = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
         return _body(section.pinion, single_pinion)
+    if shaft.is_rolling:
+        state = nominal_state(shaft, nominal_force(section, radius))
+        return body_on_tangent(Body(*_inertias(section.pinion, single_pinion), (0.0, 0.0, 0.0)), state)
     compliance = condense_shaft(stepped_shaft(shaft)).compliance
     (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
     mass, inertia = _inertias(section.pinion, single_pinion)
     return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)
+
+
+def nominal_force(section: Transmission, radius: float) -> float:
+    """Return the force at which rolling bearings are taken before a machine's statics are known.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    radius : float
+        Base radius of the pinions, m.
+
+    Returns
+    -------
+    float
+        Largest torque of a pinion over the base radius, N, at least LEAST_FORCE.
+    """
+    torques = [section.torque.per_input_n_m, *(pinion.torque_n_m or 0.0 for pinion in section.pinions)]
+    return max(LEAST_FORCE, max(abs(torque) for torque in torques) / radius)
 
 
 def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None) -> Body:

@@ -1,9 +1,25 @@
-"""Rolling bearings in SI units from their section of the config."""
+"""Rolling bearings in SI units, and shafts on them, from their sections of the config."""
 
-from math import radians
+from collections.abc import Sequence
+from functools import lru_cache
+from math import degrees, radians
+from string import ascii_uppercase
 
+import numpy as np
+from scipy.optimize import brentq
+
+from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
+from facegear.bearings.response import BALL_LIMIT, ROLLER_LIMIT
+from facegear.bearings.shaft import RollingShaft, ShaftState, Support, find_shaft_equilibrium
+from facegear.errors import ConfigError
+from facegear.machine.statics import Equilibria
+from facegear.parts.shafts import Elasticity, Segment
+from facegear.rigid_body import MOTIONS
 from facegear.schema.rolling import BALLS, RollingSection
+from facegear.schema.shafts import PreloadSection, ShaftSection
+from facegear.schema.transmission import Transmission
+from facegear.strength.bearing_rating import PlacedBearing
 
 GROOVE_RATIO = 0.52
 """Radius of a groove over the ball's diameter, dimensionless, where none is given: the value for which
@@ -56,3 +72,192 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
         has_profile=section.profile != "straight",
         **common,
     )
+
+
+LARGEST_PRELOAD = 2e-3
+"""Motion of a preloaded pair's inner rings, m, within which its thrust is looked for."""
+
+
+def rolling_shaft(section: ShaftSection) -> RollingShaft:
+    """Return a shaft with rolling bearings; equal sections share one object.
+
+    Parameters
+    ----------
+    section : ShaftSection
+        The section, validated, with a rolling bearing.
+
+    Returns
+    -------
+    RollingShaft
+        In SI units, with its preload as offsets of the supports.
+
+    Raises
+    ------
+    ConfigError
+        If no preload gives the thrust that is asked for.
+    """
+    return _rolling_shaft(section)
+
+
+@lru_cache(maxsize=64)
+def _rolling_shaft(section: ShaftSection) -> RollingShaft:
+    """Return `rolling_shaft` of a section."""
+    preload = section.preload
+    if preload is None or preload.axial_um is not None:
+        return _preloaded(section, 0.0 if preload is None else 1e-6 * (preload.axial_um or 0.0))
+    thrust = preload.axial_n
+    assert thrust is not None
+    number = ascii_uppercase.index(preload.bearings[0])
+    towards = np.sign(_offsets(section, preload, 1.0)[number, 2])
+
+    def excess(distance: float) -> float:
+        """Return the thrust in the pair, unloaded, less the one asked for, N, at a preload in m."""
+        state = find_shaft_equilibrium(_preloaded(section, distance), np.zeros(MOTIONS))
+        return float(towards * state.forces[number, 2]) - thrust
+
+    if excess(LARGEST_PRELOAD) < 0.0:
+        raise ConfigError("preload.axial_n", thrust, f"less than {thrust + excess(LARGEST_PRELOAD):.4g} N")
+    return _preloaded(
+        section, float(brentq(excess, -LARGEST_PRELOAD, LARGEST_PRELOAD, xtol=1e-15, rtol=1e-13))
+    )
+
+
+def _preloaded(section: ShaftSection, distance: float) -> RollingShaft:
+    """Return the shaft of a section with a preload of its pair, m."""
+    offsets = _offsets(section, section.preload, distance)
+    supports = []
+    for bearing, offset in zip(section.bearings, offsets, strict=True):
+        rolling = bearing.rolling
+        support = bearing.stiffness() if rolling is None else rolling_bearing(rolling)
+        supports.append(Support(1e-3 * bearing.at_mm, support, offset))
+    segments = tuple(
+        Segment(1e-3 * part.length_mm, 1e-3 * part.diameter_mm, 1e-3 * part.bore_mm)
+        for part in section.segments
+    )
+    material = Elasticity(1e9 * section.material.young_modulus_gpa, section.material.poisson_ratio)
+    return RollingShaft(segments, material, tuple(supports), 1e-3 * section.pinion_mm)
+
+
+def _offsets(section: ShaftSection, preload: PreloadSection | None, distance: float) -> Array:
+    """Return the motions of the inner rings (bearings, 5), m and rad, that positions of the bores and a
+    preload (m) make.
+
+    Each of the pair moves by half of it, as the thrust that loads the bearing. Rings of bearings that take
+    thrust both ways move towards each other.
+    """
+    offsets = np.zeros((len(section.bearings), MOTIONS))
+    for number, bearing in enumerate(section.bearings):
+        offsets[number, :2] = -1e-6 * bearing.position_um.x, -1e-6 * bearing.position_um.y
+    if preload is None:
+        return offsets
+    pair = [ascii_uppercase.index(letter) for letter in preload.bearings]
+    stations = [section.bearings[number].at_mm for number in pair]
+    towards = [1.0, -1.0] if stations[0] <= stations[1] else [-1.0, 1.0]
+    ways = [section.bearings[number].rolling.loaded_by for number in pair]  # type: ignore[union-attr]
+    for index, way in enumerate(ways):
+        if way is not None:
+            towards[index] = 1.0 if way == "+z" else -1.0
+            towards[1 - index] = -towards[index]
+    for number, sign in zip(pair, towards, strict=True):
+        offsets[number, 2] = 0.5 * distance * sign
+    return offsets
+
+
+def nominal_state(section: ShaftSection, force: float) -> ShaftState:
+    """Return the state of a shaft with rolling bearings under an estimated load, where a machine's search
+    for its own begins; equal arguments share one object.
+
+    Parameters
+    ----------
+    section : ShaftSection
+        The section, validated, with a rolling bearing.
+    force : float
+        Force on the pinion across the shaft, N.
+
+    Returns
+    -------
+    ShaftState
+        Under `force` along x and half of it along y.
+    """
+    return _nominal_state(section, force)
+
+
+@lru_cache(maxsize=64)
+def _nominal_state(section: ShaftSection, force: float) -> ShaftState:
+    """Return `nominal_state` of a section."""
+    return find_shaft_equilibrium(rolling_shaft(section), np.array([force, 0.5 * force, 0.0, 0.0, 0.0]))
+
+
+def placed_bearings(section: Transmission) -> list[PlacedBearing]:
+    """Return the rolling bearings of a machine, by its pinions.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+
+    Returns
+    -------
+    list of PlacedBearing
+        Bearings with the ratings that their sections give; empty where there are none.
+    """
+    bearings = []
+    for pinion, pinion_place in enumerate(section.pinions):
+        shaft = section.shaft_of(pinion_place)
+        if shaft is None or not shaft.is_rolling:
+            continue
+        key = pinion_place.name if pinion_place.name in section.shafts else pinion_place.role
+        for number, (support, part) in enumerate(
+            zip(rolling_shaft(shaft).supports, shaft.bearings, strict=True)
+        ):
+            if part.rolling is None or isinstance(support.bearing, np.ndarray):
+                continue
+            shoulder = part.rolling.shoulder_angle_deg
+            bearings.append(
+                PlacedBearing(
+                    key=f"transmission.shafts.{key}.bearings[{number}].rolling",
+                    pinion=pinion,
+                    number=number,
+                    name=pinion_place.name,
+                    bearing=support.bearing,
+                    load_rating=part.rolling.load_rating_n,
+                    fatigue_load_limit=part.rolling.fatigue_load_limit_n,
+                    shoulder=None if shoulder is None else radians(shoulder),
+                )
+            )
+    return bearings
+
+
+def require_loads(bearings: Sequence[PlacedBearing], at_rest: Equilibria, torque: float) -> None:
+    """Refuse bearings that are overloaded, or whose balls leave their shoulders.
+
+    Parameters
+    ----------
+    bearings : sequence of PlacedBearing
+        The bearings of a machine.
+    at_rest : Equilibria
+        An equilibrium of the machine.
+    torque : float
+        On an input pinion by each of its meshes, N m, for the message.
+
+    Raises
+    ------
+    ConfigError
+        For a pressure above the reference of ISO 76, a contact angle beyond the shoulder, and an angular
+        contact ball bearing whose balls press on the side without shoulder.
+    """
+    for bearing in bearings:
+        state, at_torque = bearing.state(at_rest), f"{bearing.name} at {torque:.4g} N m"
+        limit = BALL_LIMIT if isinstance(bearing.bearing, BallBearing) else ROLLER_LIMIT
+        pressure = float(state.pressures.max())
+        if pressure > limit:
+            requirement = f"loaded up to {1e-6 * limit:.0f} MPa, the reference of ISO 76"
+            raise ConfigError(bearing.key, f"{1e-6 * pressure:.0f} MPa on {at_torque}", requirement)
+        least, largest = state.contact_angles
+        angle = max(abs(least), abs(largest))
+        if bearing.shoulder is not None and angle > bearing.shoulder:
+            requirement = f"loaded up to shoulder_angle_deg = {degrees(bearing.shoulder):g}"
+            raise ConfigError(bearing.key, f"contact at {degrees(angle):.4g} deg on {at_torque}", requirement)
+        if state.is_on_wrong_side:
+            requirement = "pressed together by thrust or preload: its balls press where it has no shoulder"
+            raise ConfigError(bearing.key, f"contact at {degrees(least):.4g} deg on {at_torque}", requirement)

@@ -20,6 +20,7 @@ from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
 from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, keep_slow_modes
 from facegear.machine.drive_line import DriveLine
+from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.shafts import SeatedShaft
@@ -226,9 +227,8 @@ class Casing:
         rows = np.zeros((2, len(layout.meshes), self.size))
         for mesh, (i, g) in enumerate(layout.meshes):
             if g in self.tilting_with_seat:
-                along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
-                lift = layout.gears[g].sign * np.sin(layout.pressure_angle) * layout.mesh_radius
-                rows[:, mesh] = lift * along @ self.gear_tilts(g)
+                by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
+                rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
         return rows.reshape(2 * len(layout.meshes), self.size)
 
     def __call__(self, base_model: LinearModel, line: DriveLine | None = None) -> LinearModel:
@@ -360,7 +360,11 @@ def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple
         around = layout.angles[body] - first
         cosine, sine = np.cos(around), np.sin(around)
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
-        return axes, (layout.mesh_radius if distance is None else distance) * axes[2]
+        place = layout.pinion_middle if distance is None else distance
+        if layout.kind is None:
+            return axes, place * axes[2]
+        axes = layout.kind.lean @ axes
+        return axes, layout.kind.offset * axes[0] + place * axes[2]
     cosine, sine = np.cos(first), np.sin(first)
     axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions

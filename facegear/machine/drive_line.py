@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.bearings.shaft import RollingShaft, ShaftState
 from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.shafts import CondensedShaft
@@ -31,10 +32,16 @@ class Seat:
         Compliance of the shaft on its bearings, condensed to the pinion's middle.
     tilt_inertia : float or None
         Moment of inertia about a diameter, kg m2; None for a pinion that does not tilt.
+    rolling : RollingShaft or None
+        Shaft on rolling bearings, whose tangent at `state` is `shaft`; None on springs.
+    state : ShaftState or None
+        Where the rolling bearings are linearised: under the mean load.
     """
 
     shaft: CondensedShaft
     tilt_inertia: float | None = None
+    rolling: RollingShaft | None = None
+    state: ShaftState | None = None
 
     @property
     def couples_axially(self) -> bool:
@@ -43,6 +50,24 @@ class Seat:
         """
         axial_row = np.delete(self.shaft.compliance[2], 2)
         return bool((axial_row != 0.0).any())
+
+    def bearing_loads(self, loads: Array) -> Array:
+        """Return the loads of the shaft on its bearings by those of the pinion; rolling bearings by their
+        tangent.
+
+        Parameters
+        ----------
+        loads : (..., 5) array
+            Forces and moments of the pinion on the shaft, N and N m.
+
+        Returns
+        -------
+        (..., bearings, 5) array
+            N and N m.
+        """
+        if self.state is None:
+            return self.shaft.bearing_loads(loads)
+        return np.asarray(self.state.forces + self.shaft.bearing_loads(loads - self.state.pinion_load))
 
 
 @dataclass(frozen=True)
@@ -87,6 +112,11 @@ class DriveLine:
     layout: Layout
     seats: Mapping[int, Seat]
     masses: Mapping[int, tuple[TurningMass, ...]]
+
+    @property
+    def rolling(self) -> tuple[int, ...]:
+        """Numbers in the layout, rising, of the pinions whose shafts have rolling bearings."""
+        return tuple(i for i, seat in sorted(self.seats.items()) if seat.rolling is not None)
 
     @property
     def tilting(self) -> tuple[int, ...]:
@@ -183,8 +213,9 @@ class DriveLine:
         """Return the model with the drive line's coordinates behind its own.
 
         Torques move to the last mass of a chain. The stiffness of its shaft replaces the bearing of a
-        pinion that tilts, or whose bearings couple axial motion with others. The lumped damping acts on
-        shafts and their bearings, and on no turning mass.
+        pinion that tilts, or whose bearings couple axial motion with others. Rolling bearings are left out:
+        `facegear.machine.supports` adds their tangent. The lumped damping acts on shafts and their
+        bearings, and on no turning mass.
         """
         added_count = self.size
         inertias = self._inertias()
@@ -193,7 +224,9 @@ class DriveLine:
         stiffness = np.pad(model.stiffness, (0, added_count))
         for pinion, seat in self.seats.items():
             coordinates = self.motions(pinion)
-            if coordinates.size == MOTIONS or seat.couples_axially:
+            if seat.rolling is not None:
+                stiffness[np.ix_(coordinates, coordinates)] = 0.0
+            elif coordinates.size == MOTIONS or seat.couples_axially:
                 matrix = seat.shaft.stiffness if coordinates.size == MOTIONS else seat.shaft.square
                 stiffness[np.ix_(coordinates, coordinates)] = matrix
         torsion, dampers = self._torsion_matrices(model)
@@ -206,13 +239,26 @@ class DriveLine:
             labels=(*model.labels, *self._labels()),
             mass=mass,
             stiffness=stiffness + torsion,
-            rows=np.pad(model.rows, ((0, 0), (0, added_count))),
+            rows=self._rows(model),
             torques=torques,
             forces=np.pad(model.forces, (0, added_count)),
             lengths=np.append(model.lengths, self._lengths()),
             dampers=np.pad(model.dampers, (0, added_count)) + dampers,
             spin=self._spin(model),
         )
+
+    def _rows(self, model: LinearModel) -> Array:
+        """Return the rows of the flanks over all coordinates, (flanks, n + size): zero for turning masses,
+        the moment of the flank's normal about the middle of the pinion's face for tilts.
+        """
+        rows, layout = np.pad(model.rows, ((0, 0), (0, self.size))), self.layout
+        if layout.kind is None:
+            return rows
+        for mesh, (pinion, gear) in enumerate(layout.meshes):
+            if pinion in self.tilting:
+                for flank, frame in enumerate(layout.flank_frames[gear]):
+                    rows[mesh + flank * len(layout.meshes), self.tilts(pinion)] = frame.moment[:2]
+        return rows
 
     def _inertias(self) -> Array:
         """Return the inertias of the added coordinates (size,): tilts, then turning masses, kg m^2."""
@@ -304,8 +350,11 @@ class DriveLine:
         Returns
         -------
         bool
-            False where an axial force loads a pinion whose bearings couple axial and other motions.
+            False where an axial force loads a pinion whose bearings couple axial and other motions, and
+            with rolling bearings, and where meshes push pinions along their axes or tilt them.
         """
+        if self.rolling or (self.layout.kind is not None and self.seats):
+            return False
         axial_coordinates = [self.motions(i)[2] for i, seat in self.seats.items() if seat.couples_axially]
         return not model.forces[axial_coordinates].any()
 

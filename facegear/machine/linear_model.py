@@ -84,6 +84,9 @@ class LinearModel:
     slopes : (2, meshes, n)
         Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
         dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
+    tangent_loads : (n,)
+        The part of `forces` that tangents of rolling bearings add: tangent times motion less load, both at
+        the mean load; None without rolling bearings.
     seat_tilts : (bodies, 2, k)
         Tilts about x and y of bodies that have no such coordinates, by the first k coordinates, rad: those
         with their seats on a casing; None without one.
@@ -103,6 +106,7 @@ class LinearModel:
     rings: Rings
     spin: Spin | None = field(default=None)
     slopes: Array | None = field(default=None)
+    tangent_loads: Array | None = field(default=None)
     seat_tilts: Array | None = field(default=None)
 
     @property

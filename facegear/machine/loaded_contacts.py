@@ -24,6 +24,7 @@ from facegear.machine.flanks import flank_edges, flank_law
 from facegear.machine.machine import Machine
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import bearing_forces, mean_equilibrium
+from facegear.machine.supports import has_rolling_bearings
 from facegear.meshing.law import past_levels
 
 OPEN_SHARE, CLOSED_SHARE = 1e-9, 1e-6
@@ -168,11 +169,12 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     Returns
     -------
     (2 meshes,) array or None
-        N, drive flanks first. None for bearings with clearance or a stiffness that depends on the load,
-        and where the set does not settle in MAX_SETS steps or leaves a loaded body free.
+        N, drive flanks first. None for bearings with clearance or whose stiffness depends on the load, as
+        that of the flanks may, and where the set does not settle in MAX_SETS steps or leaves a loaded
+        body free.
     """
     linear = machine.static_machine.linear
-    if linear.rings.body.size or not machine.constant_stiffness:
+    if linear.rings.body.size or has_rolling_bearings(machine.drive_line) or not machine.constant_stiffness:
         return None
     masses = linear.mass.diagonal()
     scale = np.where(masses > 0.0, 1.0 / np.sqrt(np.where(masses > 0.0, masses, 1.0)), 1.0 / linear.lengths)

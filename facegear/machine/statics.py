@@ -9,7 +9,8 @@ contact, every bearing a spring, with clearance or without: one convex problem a
 accuracy of its numbers. Each result is held against the balance of all forces and moments on every body.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from facegear.machine.flank_errors import constant_errors, error_series, slow_er
 from facegear.machine.flanks import flank_law, line_law
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
+from facegear.machine.rolling_equilibria import ShaftLoads, rolling_equilibria
+from facegear.machine.supports import has_rolling_bearings
 from facegear.meshing.law import LawAtPhases, MeshLaw
 
 EPSILON = float(np.finfo(float).eps)
@@ -72,7 +75,12 @@ class Balance:
 
 
 def balance(
-    linear: LinearModel, displacements: Array, forces: Array, stiffness: Array, gaps: Array
+    linear: LinearModel,
+    displacements: Array,
+    forces: Array,
+    stiffness: Array,
+    gaps: Array,
+    on_shafts: Array | None = None,
 ) -> Balance:
     """Compute the force and moment out of balance on every body: bearings + rows^T forces - loads.
 
@@ -92,6 +100,8 @@ def balance(
         Stiffness of the contacts, N/m; only used to estimate the rounding of the forces.
     gaps : (K, F) array
         Gaps of the contacts, m; only used for that estimate.
+    on_shafts : (K, dof) array or None
+        Loads of the bodies on shafts with rolling bearings, which `linear` leaves out, N and N m.
 
     Returns
     -------
@@ -99,7 +109,7 @@ def balance(
         Residual and rounding (K,), relative to the largest applied or contact force of each position.
     """
     rows, arms, loads = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
-    left_over = bearing_loads(linear, displacements) + forces @ rows - loads
+    left_over = bearing_loads(linear, displacements, on_shafts) + forces @ rows - loads
     size = np.maximum(np.abs(loads / arms).max(), np.abs(forces).max(axis=1))
     size = np.where(size > 0.0, size, 1.0)
     motion_sizes = np.abs(displacements)
@@ -111,7 +121,7 @@ def balance(
     )
 
 
-def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
+def bearing_loads(linear: LinearModel, displacements: Array, on_shafts: Array | None = None) -> Array:
     """Return the force or moment of every degree of freedom on its bearing: stiffness times displacement.
 
     A bearing with radial clearance c presses with k (1 - c / distance) times its displacement (x, y)
@@ -123,6 +133,8 @@ def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
         Bearings of the machine.
     displacements : (K, dof) array
         m and rad.
+    on_shafts : (K, dof) array or None
+        Loads of the bodies on shafts with rolling bearings, which `linear` leaves out, N and N m.
 
     Returns
     -------
@@ -135,7 +147,7 @@ def bearing_loads(linear: LinearModel, displacements: Array) -> Array:
     distance = np.maximum(np.hypot(ring_displacements[..., 0], ring_displacements[..., 1]), rings.clearance)
     beyond = np.maximum(1.0 - rings.clearance / distance, 0.0)
     loads[:, at] += ring_displacements * beyond[..., None] * rings.stiffness[:, None]
-    return np.asarray(loads)
+    return np.asarray(loads if on_shafts is None else loads + on_shafts)
 
 
 TOLERANCE = 1e-13
@@ -171,12 +183,16 @@ class Equilibria:
     - deflections (K, meshes): tangential part, as in `Equilibrium`, m
     - flank_forces (K, 2 meshes): compressive forces, drive flanks first, N
     - residual (K,): as in `Equilibrium`
+    - shafts: shafts on rolling bearings by the numbers of their pinions
+    - on_shafts (K, dof): loads of the bodies on these shafts, N and N m; None without them
     """
 
     displacements: Array
     deflections: Array
     flank_forces: Array
     residual: Array
+    shafts: Mapping[int, ShaftLoads] = field(default_factory=dict)
+    on_shafts: Array | None = None
 
     @property
     def forces(self) -> Array:
@@ -291,8 +307,8 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     """Compute static equilibria with given laws and errors of the flanks.
 
     Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
-    positions together; else dense algebra solves one after the other. Every result is checked by
-    `balance`.
+    positions together; else dense algebra solves one after the other. Rolling bearings have a solver of
+    their own. Every result is checked by `balance`.
 
     Parameters
     ----------
@@ -318,6 +334,8 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         If forces and moments stay out of balance at a position.
     """
     law_at_positions, gaps = law.statics_law(cycles), errors + np.tile(machine.half_backlash, 2)
+    if has_rolling_bearings(machine.drive_line):
+        return _settle_shafts(machine, law, cycles, gaps, law_at_positions.stiffness, names)
     blocks = static_blocks(machine.static_machine)
     if blocks is not None and has_kernel(law_at_positions):
         displacements, forces = _by_blocks(blocks, law_at_positions, gaps)
@@ -329,6 +347,28 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     force_balance.require(RESIDUAL_LIMIT, names)
     drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
     return Equilibria(displacements, 0.5 * (drive - back), forces, force_balance.residual)
+
+
+def _settle_shafts(
+    machine: Machine, law: MeshLaw, cycles: Array, gaps: Array, stiffness: Array, names: list[str]
+) -> Equilibria:
+    """Return the equilibria of a machine with rolling bearings, as `settle`; `gaps` and `stiffness`, (K,
+    flanks), in m and N/m.
+    """
+    linear, solution = machine.linear_without_rolling, rolling_equilibria(machine, law, cycles, gaps)
+    forces = solution.flanks
+    force_balance = balance(linear, solution.displacements, forces, stiffness, gaps, solution.loads)
+    size = np.maximum(np.abs(linear.loads / linear.lengths).max(), np.abs(forces).max(axis=1))
+    size = np.where(size > 0.0, size, 1.0)
+    whole = Balance(
+        residual=np.maximum(force_balance.residual, solution.imbalance / size),
+        rounding=force_balance.rounding + solution.rounding / size,
+    )
+    whole.require(RESIDUAL_LIMIT, names)
+    drive, back = np.split(solution.displacements @ linear.rows.T - gaps, 2, axis=1)
+    return Equilibria(
+        solution.displacements, 0.5 * (drive - back), forces, whole.residual, solution.shafts, solution.loads
+    )
 
 
 def _by_blocks(blocks: StaticBlocks, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
@@ -374,7 +414,7 @@ def static_bearing_forces(machine: Machine) -> Array:
     Raises
     ------
     NotConverged
-        If no equilibrium is found.
+        If no equilibrium is solution.
     """
     if machine.layout.kinematics.flanks_apart:
         return bearing_forces(machine, mean_equilibrium(machine))[0]
@@ -397,4 +437,5 @@ def bearing_forces(machine: Machine, at_rest: Equilibria) -> Array:
     (K, bodies, 3) array
         Along x, y, z, N.
     """
-    return bearing_loads(machine.linear, at_rest.displacements)[:, machine.linear.translations]
+    linear = machine.linear_without_rolling
+    return bearing_loads(linear, at_rest.displacements, at_rest.on_shafts)[:, linear.translations]

@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.arrays import Array, Integers, Mask
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads, tilting_moments
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium, static_bearing_forces
 from facegear.motion.integrator.reduction import Reduction
@@ -58,8 +58,9 @@ def bearing_forces(model: Model, motion: Track) -> Array:
 
     It is positive along the body's displacement; the bearing pushes back with the opposite force.
 
-    The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
-    clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+    The force is K q + beta K q' + D q', less the constant loads that tangents of rolling bearings have. Mass
+    damping acts from outside and not through a bearing. With clearance the spring acts beyond it, F = k (1 -
+    c / r) (x, y), and its damping is beta dF/dt.
 
     Parameters
     ----------
@@ -79,6 +80,8 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     first = len(moving_parts) - 4 * rings.body.size
     forces = np.zeros((maps.alone.size, motion.count))
     forces[maps.alone] = moving_parts[:first]
+    if linear.tangent_loads is not None:
+        forces -= linear.tangent_loads[linear.translations.ravel(), None]
     forces = forces.reshape(*linear.translations.shape, -1)
     if rings.body.size:
         displacements, rates = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
@@ -158,11 +161,13 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     motion = track(response)
     linear, reduction = model.machine.linear, model.reduction
     moments = {i: motion.along(*_force_matrices(linear, reduction, line.tilts(i))).T for i in line.tilting}
+    if linear.tangent_loads is not None:
+        moments = {i: about - linear.tangent_loads[line.tilts(i)] for i, about in moments.items()}
     strains = None
     if model.machine.casing is not None:
         displacements = motion.along(reduction.basis.T, np.zeros_like(reduction.basis.T)).T
         strains = ring_strains(model.machine, displacements)
-    return shaft_bearing_loads(line, forces, moments, strains)
+    return shaft_bearing_loads(line, forces, moments, strains=strains)
 
 
 def velocities(response: SteadyState) -> Array:
@@ -209,10 +214,12 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
-        strains = None
-        if machine.casing is not None:
-            strains = ring_strains(machine_at_rest, mean_equilibrium(machine_at_rest).displacements)
-        static_loads = shaft_bearing_loads(line, static_forces, strains=strains)
+        strains, about = None, None
+        if machine.casing is not None or machine.layout.kind is not None:
+            still = mean_equilibrium(machine_at_rest)
+            strains = ring_strains(machine_at_rest, still.displacements)
+            about = tilting_moments(machine_at_rest, still)
+        static_loads = shaft_bearing_loads(line, static_forces, about, strains=strains)
         static_forces = np.concatenate([static_forces, static_loads[..., :3]], axis=1)
     dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
     statistics = moments(

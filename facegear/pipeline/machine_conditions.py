@@ -134,6 +134,24 @@ def drive_line(case: Case) -> bool:
     return transmission is not None and bool(transmission["shafts"] or transmission["torsion"])
 
 
+def rolling_bearings(case: Case) -> bool:
+    """Whether a shaft stands on rolling bearings.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    transmission = case.values["transmission"]
+    shafts = {} if transmission is None else transmission["shafts"]
+    return any(bearing["rolling"] is not None for shaft in shafts.values() for bearing in shaft["bearings"])
+
+
 def shaft_figures(case: Case) -> list[str]:
     """Return the names of the figures of shafts.
 

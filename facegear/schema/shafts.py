@@ -1,5 +1,6 @@
 """Config sections `shafts` and `torsion` of a transmission: what pinions sit on, and what torques turn."""
 
+from string import ascii_uppercase
 from typing import Annotated
 
 import numpy as np
@@ -8,7 +9,9 @@ from pydantic import Field, model_validator
 from facegear.arrays import Array
 from facegear.rigid_body import MOTIONS, is_held
 from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.bodies import Position
 from facegear.schema.gear_body import MaterialSection
+from facegear.schema.rolling import ONE_WAY, RollingSection
 
 SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
 """Limits of a bearing's stiffness across and along the shaft, N/m."""
@@ -21,6 +24,8 @@ MOTIONS_KEPT = "x, y, z, tilt_x, tilt_y"
 SYMMETRIC = 1e-9
 """Relative size up to which the skew part and a negative eigenvalue of a bearing's matrix count as rounding.
 """
+HOLDING_STIFFNESS = 1e8
+"""Stiffness that stands for a rolling bearing where only it counts which motions it holds, N/m."""
 RESERVED = ("x", "y", "z", "theta", "tilt_x", "tilt_y")
 """Names that no turning mass may have: those of motions."""
 OUTPUT = "output"
@@ -43,7 +48,9 @@ class SegmentSection(Section):
 
 
 class ShaftBearing(Section):
-    """A bearing: stiffness across and along the shaft and against tilting, or its matrix."""
+    """A bearing: stiffness across and along the shaft and against tilting, or its matrix, or a rolling
+    bearing.
+    """
 
     at_mm: float = Field(ge=0, le=LONGEST_MM * 100, description="from the beginning of the first segment")
     radial_n_per_m: float | None = Field(
@@ -61,20 +68,39 @@ class ShaftBearing(Section):
     matrix: tuple[tuple[Annotated[float, Field(ge=-1e16, le=1e16)], ...], ...] | None = Field(
         None, description=f"5 x 5 in {MOTIONS_KEPT}, N/m, N/rad and N m/rad, in place of the others"
     )
+    rolling: RollingSection | None = Field(
+        None, description="in place of all stiffnesses: a rolling bearing that knows its load"
+    )
+
+    position_um: Position = Field(
+        Position(), description="of the bore of a rolling bearing relative to its nominal place"
+    )
 
     @model_validator(mode="after")
     def _given_once(self) -> "ShaftBearing":
         """Check that stiffness is given once and the matrix is valid."""
-        require_all(self._not_twice, self._square)
+        require_all(self._not_twice, self._square, self._check_position)
         return self
 
+    def _check_position(self) -> None:
+        """Refuse the position of a bore of springs."""
+        if self.rolling is None and self.position_um != Position():
+            requirement = "left out of a bearing without rolling: single_pinions.<name>.position_um moves all"
+            refuse("position_um", self.position_um.model_dump(), requirement)
+
     def _not_twice(self) -> None:
-        """Refuse a bearing with a matrix and single stiffnesses, or with neither."""
+        """Refuse a bearing with a matrix and single stiffnesses, with rolling and any, or with nothing."""
+        keys = ("radial_n_per_m", "axial_n_per_m", "tilt_n_m_per_rad")
+        if self.rolling is not None:
+            for key in (*keys, "matrix"):
+                if (value := getattr(self, key)) is not None:
+                    refuse(key, value, "left out beside rolling, whose stiffness follows from its load")
+            return
         if self.matrix is None:
             if self.radial_n_per_m is None:
-                refuse("radial_n_per_m", None, "given, or else matrix")
+                refuse("radial_n_per_m", None, "given, or else matrix or rolling")
             return
-        for key in ("radial_n_per_m", "axial_n_per_m", "tilt_n_m_per_rad"):
+        for key in keys:
             if (value := getattr(self, key)) is not None:
                 refuse(key, value, "left out beside matrix, which holds it")
 
@@ -98,14 +124,47 @@ class ShaftBearing(Section):
         Returns
         -------
         (5, 5) array
-            Forces and moments over displacements in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
+            Forces and moments over displacements in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad. A
+            rolling bearing has HOLDING_STIFFNESS where it holds the shaft.
         """
+        if self.rolling is not None:
+            holds_along = self.rolling.type != "cylindrical_roller"
+            return np.diag([HOLDING_STIFFNESS, HOLDING_STIFFNESS, HOLDING_STIFFNESS * holds_along, 0.0, 0.0])
         if self.matrix is not None:
             return np.array(self.matrix, float)
         across, along, tilting = (
             value or 0.0 for value in (self.radial_n_per_m, self.axial_n_per_m, self.tilt_n_m_per_rad)
         )
         return np.diag([across, across, along, tilting, tilting])
+
+
+class PreloadSection(Section):
+    """Preload of two rolling bearings of a shaft, before it is loaded."""
+
+    bearings: tuple[str, ...] = Field(
+        description="letters of the two, A being the first bearing of the list: [A, B]"
+    )
+    axial_um: float | None = Field(
+        None, ge=-500, le=500, description="by which the inner rings are pressed together; negative: endplay"
+    )
+    axial_n: float | None = Field(None, gt=0, le=1e6, description="thrust in the pair, in place of axial_um")
+
+    @model_validator(mode="after")
+    def _of_two(self) -> "PreloadSection":
+        """Refuse a preload of other than two bearings, and one given twice or not at all."""
+        require_all(self._two_letters, self._one_amount)
+        return self
+
+    def _two_letters(self) -> None:
+        """Refuse anything but two different letters."""
+        letters = list(self.bearings)
+        if len(letters) != 2 or len(set(letters)) != 2:
+            refuse("bearings", letters, "two different letters, such as [A, B]")
+
+    def _one_amount(self) -> None:
+        """Refuse both amounts or none."""
+        if (self.axial_um is None) == (self.axial_n is None):
+            refuse("axial_um", self.axial_um, "given, or else axial_n, but not both")
 
 
 class ShaftSection(Section):
@@ -125,6 +184,7 @@ class ShaftSection(Section):
         le=1e5,
         description="of the pinion about a diameter; null: it does not tilt in the dynamics",
     )
+    preload: PreloadSection | None = Field(None, description="of two rolling bearings; null: none")
 
     @property
     def length_mm(self) -> float:
@@ -133,8 +193,15 @@ class ShaftSection(Section):
 
     @property
     def is_round(self) -> bool:
-        """Whether every bearing is equally stiff in all radial directions: none is given by a matrix."""
-        return all(bearing.matrix is None for bearing in self.bearings)
+        """Whether every bearing is equally stiff in all radial directions: none is given by a matrix or
+        rolling.
+        """
+        return all(bearing.matrix is None and bearing.rolling is None for bearing in self.bearings)
+
+    @property
+    def is_rolling(self) -> bool:
+        """Whether a bearing of the shaft is a rolling bearing."""
+        return any(bearing.rolling is not None for bearing in self.bearings)
 
     @model_validator(mode="after")
     def _stands(self) -> "ShaftSection":
@@ -142,7 +209,7 @@ class ShaftSection(Section):
         for key in ("segments", "bearings"):
             if not getattr(self, key):
                 refuse(key, [], "one or more")
-        require_all(self._stations, self._check_support)
+        require_all(self._stations, self._check_support, self._check_preload)
         return self
 
     def _stations(self) -> None:
@@ -164,7 +231,49 @@ class ShaftSection(Section):
         stiffnesses = [bearing.stiffness() for bearing in self.bearings]
         if not is_held(distances, stiffnesses, 1e-3 * self.length_mm):
             condition = "such that they hold it along its axis and against tilting"
+            if self.is_rolling:
+                condition += (
+                    "; cylindrical rollers take no thrust, and one rolling bearing does not count there"
+                )
             refuse("bearings", f"at {', '.join(f'{at:g}' for at in stations)} mm", condition)
+        self._check_thrust()
+
+    def _check_thrust(self) -> None:
+        """Refuse bearings that hold the shaft along its axis one way only."""
+        ways, first = set(), None
+        for number, bearing in enumerate(self.bearings):
+            if bearing.rolling is None or bearing.rolling.type not in ONE_WAY:
+                if bearing.stiffness()[2, 2] > 0.0:
+                    return
+                continue
+            ways.add(bearing.rolling.loaded_by)
+            first = number if first is None else first
+        if len(ways) == 1:
+            way = ways.pop()
+            requirement = (
+                "the opposite of it at another bearing: no bearing takes the shaft's thrust that way"
+            )
+            refuse(f"bearings[{first}].rolling.loaded_by", way, requirement)
+
+    def _check_preload(self) -> None:
+        """Refuse a preload of bearings that cannot be pressed against each other."""
+        if self.preload is None:
+            return
+        letters, ways = ascii_uppercase[: len(self.bearings)], []
+        for letter in self.preload.bearings:
+            if letter not in letters or not letter:
+                refuse(
+                    "preload.bearings",
+                    letter,
+                    f"letters of the shaft's bearings, {letters[0]} to {letters[-1]}",
+                )
+            section = self.bearings[letters.index(letter)].rolling
+            if section is None or section.type == "cylindrical_roller":
+                requirement = "rolling bearings that take thrust: neither springs nor cylindrical rollers"
+                refuse("preload.bearings", letter, requirement)
+            ways.append(section.loaded_by)
+        if ways[0] is not None and ways[0] == ways[1]:
+            refuse("preload.bearings", list(self.preload.bearings), "bearings with opposite loaded_by")
 
 
 class TurningMassSection(Section):

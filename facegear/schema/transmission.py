@@ -284,6 +284,8 @@ class Transmission(Section):
                     requirement = (
                         "0 beside a shaft with tilt_inertia_kg_m2 or with a bearing given by its matrix"
                     )
+                    if shaft.is_rolling:
+                        requirement = "0 beside rolling, whose clearance_diametral_um is its own"
                     refuse(key, clearance, requirement)
                 continue
             bearing = single.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m

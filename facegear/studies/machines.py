@@ -11,13 +11,14 @@ from facegear.arrays import Arrays
 from facegear.build.lubrication import limits_of
 from facegear.build.lumped_model import lumped_parts, machine
 from facegear.build.machine import tables_of
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.notes import require_buildable, require_room
 from facegear.build.plans import settings, sharing_options
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.contact.gear_flank import from_arrays
 from facegear.errors import FacegearError
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
+from facegear.machine.mean_load import at_mean_load
 from facegear.machine.poses.fixed_point import posed_machine
 from facegear.machine.poses.surface import PoseSurface
 from facegear.machine.static_gears import at_rest
@@ -354,7 +355,7 @@ def judge(
             lumped_machine = bodies.add_bodies(lumped_machine, section, values["tooth_pair"])
         if surface is not None:
             lumped_machine = posed_machine(lumped_machine, surface)
-        return mesh, lumped_machine
+        return mesh, at_mean_load(lumped_machine)
 
     @cache
     def guide() -> Guide | None:

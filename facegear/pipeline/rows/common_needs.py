@@ -6,8 +6,12 @@ from facegear.schema.changes import TEETH
 
 PAIR: Needs = {"tooth_pair": "tooth_pair"}
 """Need of the tooth pair."""
-MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
-"""Needs of the machine: its section, and the keys of the teeth that it takes."""
+TEETH_OF_MACHINE = ComputedValue(
+    arguments.teeth_of_machine, (*(f"tooth_pair.{key}" for key in TEETH), "tooth_pair.pinion.middle_mm")
+)
+"""What the machine takes of the tooth pair."""
+MACHINE: Needs = {"transmission": "transmission", "teeth": TEETH_OF_MACHINE}
+"""Needs of the machine: its section, and what it takes of the teeth."""
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 """Need of the operating speed."""
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}

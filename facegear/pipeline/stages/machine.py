@@ -8,6 +8,7 @@ import pandas as pd
 
 from facegear.build.machine import MachineInputs
 from facegear.build.machine_layout import stepped_shaft
+from facegear.build.rolling import rolling_shaft
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.loaded_modes import contact_table, frequency_table, shape_table, vibrating_machine
@@ -187,7 +188,11 @@ def shafts(
     machine_at_rest, section = at_rest(machine), inputs.transmission
     equilibrium = mean_equilibrium(machine_at_rest)
     shaft_sections = {i: section.shaft_of(pinion) for i, pinion in enumerate(section.pinions)}
-    stepped = {i: stepped_shaft(shaft) for i, shaft in shaft_sections.items() if shaft is not None}
+    stepped = {
+        i: rolling_shaft(shaft) if shaft.is_rolling else stepped_shaft(shaft)
+        for i, shaft in shaft_sections.items()
+        if shaft is not None
+    }
     content = {
         "seats": seat_table(machine_at_rest, line, equilibrium),
         "stiffness": stiffness_table(line),

@@ -5,6 +5,7 @@ sensors.
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Array
 from facegear.report.figures.colours import BLUE, RED, grey
 from facegear.report.figures.description import Axis, Figure, Key, Panel
 from facegear.report.figures.marks import Bars, Curve, Mark, Scatter, Text
@@ -51,7 +52,7 @@ def load_sharing(sharing: pd.DataFrame) -> Figure:
         One panel, two bars a mesh.
     """
     count = len(sharing)
-    positions = 2.6 * np.arange(count)[::-1]
+    positions: Array = np.arange(count, dtype=np.float64)[::-1] * 2.6
     ticks = [(float(position), mesh) for position, mesh in zip(positions, sharing["mesh"], strict=True)]
     bars: list[Mark] = [
         Bars(

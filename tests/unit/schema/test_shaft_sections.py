@@ -109,7 +109,7 @@ def test_branches_do_not_scale_bearings_beside_springs_that_are_none(name, besid
             "bore_mm = 40.0: must be below diameter_mm = 40",
         ),
         ({"bearings": [{"at_mm": 0, "radial_n_per_m": 1.5e5}]}, "radial_n_per_m = 150000.0: must be greater"),
-        ({"bearings": [{"at_mm": 0}]}, "radial_n_per_m = null: must be given, or else matrix"),
+        ({"bearings": [{"at_mm": 0}]}, "radial_n_per_m = null: must be given, or else matrix or rolling"),
         (
             {"bearings": [{"at_mm": 0, "radial_n_per_m": 1e8}, {"at_mm": 120, "radial_n_per_m": 1e8}]},
             'bearings = "at 0, 120 mm": must be such that they hold it along its axis and against tilting',
