@@ -85,7 +85,7 @@ def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
     Gear flank point on the instantaneous line of generation, pinion flank point with the same normal.
     """
     design = pair(teeth)
-    _, ratio, space, _ = face_gear.shaper_numbers(design)
+    ratio, space = design.shaper_ratio, design.shaper_half_space_angle
     a = design.pressure_angle
     for gear_radius in np.linspace(0.251, 0.275, 10):
         slope = np.arccos(design.gear_base_radius / gear_radius)
