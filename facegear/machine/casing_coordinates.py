@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import AnyArray, Array, Integers
 from facegear.machine.linear_model import LinearModel, Spin, massive_motions
 
 CASING = "casing"
@@ -88,7 +88,7 @@ class SeatMotion:
         return relative
 
 
-def casing_motion(linear: LinearModel, displacements: Array) -> Array:
+def casing_motion(linear: LinearModel, displacements: AnyArray) -> AnyArray:
     """Return the motions of the casing among the displacements of a machine on it.
 
     Parameters
@@ -96,7 +96,7 @@ def casing_motion(linear: LinearModel, displacements: Array) -> Array:
     linear : LinearModel
         Linear model of the machine.
     displacements : (..., n) array
-        Displacements of all coordinates, m and rad.
+        Displacements of all coordinates, real or complex, m and rad.
 
     Returns
     -------
