@@ -115,6 +115,7 @@ class Gearbox(Case):
     dynamic_stress = strength.dynamic_stress
     stress_over_speed = strength.stress_over_speed
     rating = strength.rating
+    bearing_life = strength.bearing_life
     friction = strength.friction
     losses = strength.losses
 

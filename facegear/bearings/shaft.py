@@ -1,7 +1,7 @@
 """Shafts on rolling bearings: equilibrium, and what pinion and seats feel of it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,12 +28,16 @@ class Support:
     bearing
         A rolling bearing, or the stiffness (5, 5) of a linear one, N/m, N/rad and N m/rad.
     offset : (5,)
-        Motion of the inner ring against the outer one where neither shaft nor seat moves, m and rad: preload.
+        Motion of the inner ring against the outer one where neither shaft nor seat moves, m and rad: preload,
+        and the opposite of the place of the outer ring.
+    factor
+        By which the energy of the bearing is multiplied, for trials of softer and stiffer ones; 1.
     """
 
     position: float
     bearing: AnyBearing | Array
     offset: Array
+    factor: float = 1.0
 
     def derivatives(self, motion: Array) -> Curvature:
         """Return energy, load and stiffness of the bearing at a motion of its inner ring, in which
@@ -50,12 +54,21 @@ class Support:
             Energy (J), loads on the inner ring (N and N m) and tangent (N/m, N/rad and N m/rad).
         """
         if not isinstance(self.bearing, np.ndarray):
-            return bearing_curve(self.bearing, motion)
-        force = self.bearing @ motion
-        rounding = np.finfo(float).eps * float((np.abs(self.bearing) @ np.abs(motion)).max())
-        return Curvature(
-            0.5 * float(motion @ force), force, self.bearing, float(np.abs(force).max()), rounding
-        )
+            curve = bearing_curve(self.bearing, motion)
+            if self.factor == 1.0:
+                return curve
+            energy, size, rounding = np.array([curve.energy, curve.size, curve.rounding]) * self.factor
+            return Curvature(
+                float(energy),
+                self.factor * curve.gradient,
+                self.factor * curve.matrix,
+                float(size),
+                float(rounding),
+            )
+        matrix = self.factor * self.bearing
+        force = matrix @ motion
+        rounding = np.finfo(float).eps * float((np.abs(matrix) @ np.abs(motion)).max())
+        return Curvature(0.5 * float(motion @ force), force, matrix, float(np.abs(force).max()), rounding)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +130,23 @@ class RollingShaft:
     material: Elasticity
     supports: tuple[Support, ...]
     pinion: float
+
+    def scale(self, factor: float) -> "RollingShaft":
+        """Return the shaft with all stiffness of its bearings and of itself multiplied by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            On the energy, dimensionless.
+
+        Returns
+        -------
+        RollingShaft
+            With the same clearances and preload.
+        """
+        material = replace(self.material, young=factor * self.material.young)
+        supports = tuple(replace(support, factor=factor * support.factor) for support in self.supports)
+        return replace(self, material=material, supports=supports)
 
     @cached_property
     def rigid(self) -> Array:

@@ -132,7 +132,8 @@ class ShaftElement:
         arms = self.shaft.arms[:MOTIONS]
         bearing = support.bearing
         length = np.abs(motion * arms).max(axis=1)
-        largest = np.abs(stiffness / np.outer(arms, arms)).max(axis=(1, 2))
+        # The largest entry of a matrix without negative eigenvalues stands on its diagonal.
+        largest = (np.diagonal(stiffness, axis1=1, axis2=2) / arms**2).max(axis=1)
         if not isinstance(bearing, np.ndarray):
             length = np.maximum(length, largest_gap(bearing))
             thrown = bearing.elements * bearing.stiffness_at(bearing.springs.centrifugal)
@@ -221,6 +222,7 @@ def _respond(support: Support, motion: Array) -> tuple[Array, Array]:
     """Return force (K, 5) and tangent (K, 5, 5) of a bearing at motions (K, 5) of its inner ring."""
     bearing = support.bearing
     if isinstance(bearing, np.ndarray):
-        return motion @ bearing, np.broadcast_to(bearing, (len(motion), MOTIONS, MOTIONS))
+        matrix = support.factor * bearing
+        return motion @ matrix, np.broadcast_to(matrix, (len(motion), MOTIONS, MOTIONS))
     response = respond(bearing, motion)
-    return response.force, response.stiffness
+    return support.factor * response.force, support.factor * response.stiffness

@@ -13,7 +13,7 @@ from facegear.build.machine_layout import stepped_shaft
 from facegear.casing.files import content_of, files_of, read_casing
 from facegear.casing.mounted import Foot, MountedCasing, mount
 from facegear.casing.reduction import Interface, interface_rows, reduce_casing
-from facegear.casing.whole import WholeCasing, require_free, require_mass
+from facegear.casing.whole import WholeCasing, require_free, require_held, require_mass
 from facegear.errors import ConfigError, InvalidInput, plain_reason
 from facegear.machine.casing import Casing
 from facegear.machine.layout import Layout
@@ -33,6 +33,8 @@ KEYS = {
     "sensor of the casing": "sensors",
 }
 """Keys of the section by the words in which a casing is refused."""
+SMALL = 500
+"""Rows up to which a casing is reduced as soon as a config is read, which takes less than a second."""
 NEAR = 1e-3
 """Largest distance, m, from a point to the node that stands for it."""
 
@@ -85,11 +87,13 @@ def check_casing(section: Transmission) -> None:
     try:
         whole = _read(tuple(casing.files.items()), content_of(files_of(casing.files)), casing.units)
         _check_whole(casing, whole)
+        if whole.size <= SMALL:
+            reduced_casing(casing)
     except OSError as error:
         name = str(error.filename or casing.stiffness)
-        raise ConfigError(
-            f"{KEY}.stiffness", name, f"a file that can be read ({plain_reason(error)})"
-        ) from None
+        key = next((key for key, file in casing.files.items() if file == name), "stiffness")
+        condition = f"a file that can be read ({plain_reason(error)})"
+        raise ConfigError(f"{KEY}.{key}", name, condition) from None
     except InvalidInput as error:
         raise _config_error(error, casing) from None
 
@@ -217,9 +221,10 @@ def _check_whole(section: CasingSection, whole: WholeCasing) -> None:
     """Refuse matrices that are not those of a casing on the feet that the section gives."""
     seats, feet = _interfaces(section, whole)
     interface_rows(whole, [*seats, *(foot.interface for foot in feet)])
+    require_mass(whole, section.mass_kg)
     if feet:
         require_free(whole)
-    require_mass(whole, section.mass_kg)
+    require_held(whole, [(foot.interface.position, foot.stiffness) for foot in feet])
     for sensor in section.sensors:
         if not {1, 2, 3} <= set(whole.rows_of_node.get(sensor.node, {})):
             requirement = "a node with motions along x, y and z in the stiffness"
@@ -228,7 +233,7 @@ def _check_whole(section: CasingSection, whole: WholeCasing) -> None:
 
 def _interfaces(section: CasingSection, whole: WholeCasing) -> tuple[list[Interface], list[Foot]]:
     """Return the seats and feet of a casing, SI units."""
-    seats = [_interface(f"{KEY}.seats.{name}", name, section.location(name), whole) for name in section.seats]
+    seats = [_interface(f"{KEY}.seats.{name}", name, section.seats[name], whole) for name in section.seats]
     feet = [
         Foot(_interface(f"{KEY}.feet[{number}]", name, foot, whole), _springs(foot))
         for number, (name, foot) in enumerate(zip(section.foot_names, section.feet, strict=True))

@@ -12,7 +12,7 @@ from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
-from facegear.schema.changes import TEETH, moves_pair
+from facegear.schema.changes import moves_pair
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.studies import Search
@@ -46,8 +46,7 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     ToothNumbers
         Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    bodies = {"pinion": {"middle_mm"}, "face_gear": {"inner_radius_mm", "outer_radius_mm"}}
-    return ToothNumbers.of_config(pair.model_dump(include=dict.fromkeys(TEETH, True) | bodies))
+    return ToothNumbers.of_config(pair.model_dump())
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:

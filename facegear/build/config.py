@@ -152,11 +152,20 @@ class Config(Section):
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
                 "transmission.torsion": bool(self.transmission.torsion),
+                "transmission.casing": self.transmission.casing is not None,
                 "a body of a face gear": bool(elastic_gears(self.transmission)),
             }
             for spring_owner in (name for name, is_present in springs.items() if is_present):
                 requirement = f"without bearing_stiffness beside {spring_owner}, whose springs it would scale"
                 raise ConfigError("branches.loci.parameters", list(section.loci.parameters), requirement)
+        rolls = self.transmission is not None and any(
+            shaft.is_rolling for shaft in self.transmission.shafts.values()
+        )
+        parameters = section.loci.parameters if section and rolls else ()
+        for name in ("torque", "bearing_stiffness"):
+            if name in parameters:
+                requirement = f"without {name} beside rolling bearings, whose tangent holds at the mean load"
+                raise ConfigError("branches.loci.parameters", list(parameters), requirement)
         if section and not section.from_rpm <= speed <= section.to_rpm:
             requirement = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
             raise ConfigError("dynamics.speed_rpm", speed, requirement)

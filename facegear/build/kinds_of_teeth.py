@@ -27,19 +27,13 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    "topography": ALL_KINDS,
-    **dict.fromkeys(("mesh", "cad", "compliance", "scene"), ALL_KINDS),
+    **dict.fromkeys(("topography", "compliance"), ALL_KINDS),
     **dict.fromkeys(("contact", "tooth_errors", "mesh_law", "pose_surface", "displaced_contact"), ALL_KINDS),
     **dict.fromkeys(("root_stress", "posed_stress", "rating"), ALL_KINDS),
     **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
     **dict.fromkeys(("lubrication", "machine_loss"), ALL_KINDS),
     **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
-    **dict.fromkeys(("ratings", "modal", "shafts", "shaft_orders"), ALL_KINDS),
-    **dict.fromkeys(("dynamics_response", "dynamics_sweep_chunk", "dynamics_sweep"), ALL_KINDS),
-    **dict.fromkeys(("branches_starts", "branches", "branches_loci"), ALL_KINDS),
-    **dict.fromkeys(("load_sharing", "load_sharing_reference", "hunting", "sharing_map"), ALL_KINDS),
-    **dict.fromkeys(("following", "duty_poses", "duty_loads"), ALL_KINDS),
-    **dict.fromkeys(("tolerances_chunk", "tolerances_map", "search_island", "search"), ALL_KINDS),
+    **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
 }
 """Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""
 

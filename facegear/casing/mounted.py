@@ -11,6 +11,7 @@ import scipy.linalg
 from facegear.arrays import Array, Arrays
 from facegear.casing.reduction import MOTIONS, Interface, Reduction, own_modes
 from facegear.errors import InvalidInput
+from facegear.number_format import count_noun
 
 LETTERS = ("x", "y", "z", "tilt_x", "tilt_y", "tilt_z")
 """Motions of a seat or foot, along and about the casing's X (to the first pinion), Y and Z (the gears'
@@ -290,7 +291,9 @@ def _require_held(stiffness: Array) -> None:
     values = _scaled_values(stiffness)
     if values[0] < HOLDING_LIMIT * values[-1]:
         loose = int((values < HOLDING_LIMIT * values[-1]).sum())
-        raise InvalidInput("feet of the casing", f"{loose} free motions", "such that they hold the casing")
+        raise InvalidInput(
+            "feet of the casing", count_noun(loose, "free motion"), "such that they hold the casing"
+        )
 
 
 def _modal_damping(stiffness: Array, mass: Array, ratio: float) -> Array:

@@ -24,6 +24,8 @@ FREE = 1e-6
 """Force by a rigid motion over the size of the stiffness up to which a casing counts as free.
 
 A file with ten digits gives 1e-10, coordinates in another unit than the rotations 0.1 or more."""
+LOOSE = 1e-9
+"""Stiffness of feet against a rigid motion over the largest up to which they do not hold it."""
 LIGHTEST, HEAVIEST = 4.0, 2e4
 """Mass over the cube of the largest extent, kg/m3, beyond which the unit of a casing is doubted.
 
@@ -263,6 +265,36 @@ def require_free(casing: WholeCasing) -> None:
             "of the matrix, or seats in axes of their own?"
         )
         raise InvalidInput("stiffness of the casing", count_noun(casing.size, "row"), condition)
+
+
+def require_held(casing: WholeCasing, feet: Sequence[tuple[Array, Array | None]]) -> None:
+    """Refuse a free casing whose feet do not hold it.
+
+    Parameters
+    ----------
+    casing : WholeCasing
+        The casing.
+    feet : sequence of tuple of (3,) array and (6,) array or None
+        Place (m) and springs (N/m and N m/rad) of each foot; None for one that is held.
+
+    Raises
+    ------
+    InvalidInput
+        If a rigid motion meets no force.
+    """
+    if any(springs is None for _, springs in feet) or casing.rigid_force() > FREE:
+        return
+    about = np.mean(list(casing.position_of_node.values()), axis=0)
+    stiffness, length = np.zeros((6, 6)), casing.extent
+    for position, springs in feet:
+        motions = rigid_rows(np.tile(position - about, (6, 1)), np.arange(1, 7))
+        stiffness += motions.T @ np.diag(springs if springs is not None else np.zeros(6)) @ motions
+    scale = np.array([1.0, 1.0, 1.0, *3 * (1.0 / length,)])
+    values = np.linalg.eigvalsh(stiffness * np.outer(scale, scale))
+    loose = int((values <= LOOSE * values[-1]).sum())
+    if loose:
+        value = f"{count_noun(loose, 'free motion')}"
+        raise InvalidInput("feet of the casing", value, "such that they hold the casing")
 
 
 def require_mass(casing: WholeCasing, mass: float | None) -> None:

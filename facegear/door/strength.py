@@ -1,6 +1,7 @@
 """Answers about strength and friction: stress, safety, life, loss and heat."""
 
 from facegear.door.case import Case, drop_none
+from facegear.pipeline.results.bearings import BearingLifeResult
 from facegear.pipeline.results.strength import (
     DynamicStressResult,
     FrictionResult,
@@ -95,6 +96,18 @@ def rating(self: Case) -> "RatingResult":
     ['bending', 'pitting']
     """
     return self._chain.result(RatingResult)
+
+
+def bearing_life(self: Case) -> "BearingLifeResult":
+    """Compute loads, stiffness and life of the rolling bearings of the shafts.
+
+    Returns
+    -------
+    BearingLifeResult
+        The results. Raises ConfigError for a machine without rolling bearings or with overloaded ones,
+        NotConverged.
+    """
+    return self._chain.result(BearingLifeResult)
 
 
 def friction(self: Case, speed_rpm: float | None = None) -> "FrictionResult":

@@ -29,7 +29,7 @@ def write_gltf(
     """Write whole gears in mesh, modifications included, as a binary glTF scene; assembly errors are left
     out.
 
-    Each gear is transform in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
+    Each gear is placed in the frame of the upper gear, with z, the gears' axis, turned upwards (y of glTF).
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ import numpy as np
 
 from facegear._kernels import statics
 from facegear.arrays import Array, Integers
-from facegear.machine.casing import SeatMotion, seat_motion
+from facegear.machine.casing_coordinates import SeatMotion
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.machine import Machine
 from facegear.meshing.law import LawAtPhases, LinearHeld, LoadDependentHeld
@@ -194,8 +194,8 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
     layout, linear = machine.layout, machine.linear
     stiffness, rows, seat_motions = linear.stiffness, linear.rows, None
     coordinates, scale = _select_unknowns(layout, linear.lengths)
-    if machine.casing is not None:
-        seat_motions = seat_motion(machine.casing, linear, machine.drive_line)
+    if machine.casing is not None and not machine.casing.is_condensed:
+        seat_motions = machine.casing.seat_motion(linear, machine.drive_line)
         stiffness, rows = seat_motions.relative_stiffness(stiffness), seat_motions.along_relative(rows)
         # A mode of the casing takes no load at rest.
         is_moved = ~np.isin(coordinates, seat_motions.modes)

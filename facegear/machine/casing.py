@@ -18,17 +18,13 @@ from facegear.arrays import Array, Integers
 from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
+from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, condense_massless
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.shafts import SeatedShaft
 from facegear.rigid_body import MOTIONS
-
-CASING = "casing"
-"""Body of the casing's coordinates in labels: `casing:upper gear x`."""
-CASING_MODE = 0.5
-"""Part of the kinetic energy in the casing from which a mode is one of the casing: a free choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +45,9 @@ class Casing:
         Shafts of pinions by their numbers, for those on several bearings.
     bearing_places : mapping of int to array
         Places of the bearings of these shafts along the pinion's axis from the gears' axis, (bearings,), m.
+    is_condensed : bool
+        Whether motions of the casing without mass are no coordinates: they follow the others statically, as
+        motion in time needs it.
     """
 
     layout: Layout
@@ -56,6 +55,7 @@ class Casing:
     bearing_seats: Mapping[int, tuple[str, ...]]
     shafts: Mapping[int, SeatedShaft]
     bearing_places: Mapping[int, Array]
+    is_condensed: bool = False
 
     def __post_init__(self) -> None:
         for names in self.bearing_seats.values():
@@ -145,6 +145,30 @@ class Casing:
         motion[:3, at] = axes @ np.hstack([np.eye(3), around])
         motion[3:, at.start + 3 : at.stop] = axes[:2]
         return motion
+
+    def strain_loads(self, line: DriveLine, motion: Array) -> Array:
+        """Return the loads of shafts on their bearings from motions of their seats against each other.
+
+        Parameters
+        ----------
+        line : DriveLine
+            Drive line with the shafts.
+        motion : (K, size) array
+            Motions of the casing, m and rad.
+
+        Returns
+        -------
+        (K, bearings, 5) array
+            N and N m, bearings pinion by pinion; 0 for shafts that the ground or a single seat carries.
+        """
+        loads = [np.zeros((len(motion), 0, MOTIONS))]
+        for pinion, seat in sorted(line.seats.items()):
+            rings = np.zeros((len(motion), len(seat.shaft.reactions), MOTIONS))
+            if pinion in self.shafts:
+                load = motion @ self._ring_motions(pinion).T @ self.shafts[pinion].strain
+                rings = -load.reshape(rings.shape)
+            loads.append(rings)
+        return np.concatenate(loads, axis=1)
 
     def relative_motions(self, labels: Sequence[str], line: DriveLine | None) -> Array:
         """Return H: motions that the casing gives to the coordinates of the other parts.
@@ -236,7 +260,7 @@ class Casing:
             - base_model.mass_damping * mass[old:, old:]
         )
         zeros = np.zeros(new)
-        return replace(
+        model = replace(
             base_model,
             labels=(*base_model.labels, *(f"{CASING}:{letter}" for letter in self.mounted.letters)),
             mass=mass,
@@ -247,7 +271,45 @@ class Casing:
             lengths=np.append(base_model.lengths, self._lengths()),
             dampers=dampers,
             spin=_pad_spin(base_model.spin, new),
+            seat_tilts=self._seat_tilts(old, line),
         )
+        return condense_massless(model) if self.is_condensed else model
+
+    def seat_motion(self, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
+        """Return the change of unknowns of a machine on the casing to motions against its seats.
+
+        Parameters
+        ----------
+        linear : LinearModel
+            Linear model of the machine with the casing.
+        line : DriveLine or None
+            Its drive line.
+
+        Returns
+        -------
+        SeatMotion
+            SI units.
+        """
+        first = casing_start(linear)
+        last = first + self.size
+        return SeatMotion(
+            self.relative_motions(linear.labels[:first], line),
+            slice(first, last),
+            self.mounted.stiffness + self.strain_between_seats,
+            np.arange(last - self.mounted.modes, last),
+        )
+
+    def _seat_tilts(self, before: int, line: DriveLine | None) -> Array:
+        """Return the tilts (bodies, 2, before + size) of bodies that tilt with their seats alone, behind
+        `before` other coordinates.
+        """
+        tilts = np.zeros((len(self.layout.bodies), 2, before + self.size))
+        gears = [len(self.layout.pinions) + g for g in self.tilting_with_seat]
+        tilting = () if line is None else line.tilting
+        pinions = [i for i in range(len(self.layout.pinions)) if i in self.bearing_seats and i not in tilting]
+        for body in (*pinions, *gears):
+            tilts[body, :, before:] = self.base_motions(body)[3:]
+        return tilts
 
     def _gear_inertias(self) -> Array:
         """Return the inertia (size, size) of gears that tilt with their seats: half of the polar one about a
@@ -271,124 +333,6 @@ class Casing:
         lengths[:interface_motions][is_rotation] = self.layout.mesh_radius
         lengths[interface_motions:] = 1.0 / np.sqrt(max(float(self.mounted.total_mass[0]), 1e-12))
         return lengths
-
-
-@dataclass(frozen=True, eq=False)
-class SeatMotion:
-    """Change from motions of bodies to their motions against their seats, v = q - H u.
-
-    Attributes
-    ----------
-    motion : (b, c)
-        H: motions of the first b coordinates by the c of the casing.
-    at : slice
-        Coordinates of the casing among all of the model.
-    stiffness : (c, c)
-        Of the casing and of shafts between its seats, SI units.
-    modes : (k,)
-        Coordinates of the model that are modes of the casing.
-    """
-
-    motion: Array
-    at: slice
-    stiffness: Array
-    modes: Integers
-
-    def absolute(self, displacements: Array) -> Array:
-        """Return the motions of bodies from those against their seats.
-
-        Parameters
-        ----------
-        displacements : (K, n) array
-            Unknowns v and all other coordinates, m and rad.
-
-        Returns
-        -------
-        (K, n) array
-            q and all other coordinates.
-        """
-        absolute = displacements.copy()
-        absolute[:, : len(self.motion)] += displacements[:, self.at] @ self.motion.T
-        return absolute
-
-    def along_relative(self, rows: Array) -> Array:
-        """Return loads or flank rows by the unknowns v and u from those by q and u.
-
-        Parameters
-        ----------
-        rows : (..., n) array
-            Any unit.
-
-        Returns
-        -------
-        (..., n) array
-            In the same unit.
-        """
-        relative = rows.copy()
-        relative[..., self.at] += rows[..., : len(self.motion)] @ self.motion
-        return relative
-
-    def relative_stiffness(self, stiffness: Array) -> Array:
-        """Return the stiffness by v and u, in which no bearing joins a body with its seat.
-
-        Parameters
-        ----------
-        stiffness : (n, n) array
-            By q and u, SI units.
-
-        Returns
-        -------
-        (n, n) array
-            SI units.
-        """
-        relative = stiffness.copy()
-        bodies = slice(0, len(self.motion))
-        relative[bodies, self.at] = relative[self.at, bodies] = 0.0
-        relative[self.at, self.at] = self.stiffness
-        return relative
-
-
-def seat_motion(casing: Casing, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
-    """Return the change of unknowns of a machine on a casing.
-
-    Parameters
-    ----------
-    casing : Casing
-        The casing.
-    linear : LinearModel
-        Linear model of the machine with the casing.
-    line : DriveLine or None
-        Its drive line.
-
-    Returns
-    -------
-    SeatMotion
-        SI units.
-    """
-    first = casing_start(linear)
-    last = first + casing.size
-    return SeatMotion(
-        casing.relative_motions(linear.labels[:first], line),
-        slice(first, last),
-        casing.mounted.stiffness + casing.strain_between_seats,
-        np.arange(last - casing.mounted.modes, last),
-    )
-
-
-def casing_start(linear: LinearModel) -> int:
-    """Return the index of the first coordinate of the casing.
-
-    Parameters
-    ----------
-    linear : LinearModel
-        Linear model of a machine on a casing.
-
-    Returns
-    -------
-    int
-        Index among all coordinates.
-    """
-    return next(n for n, label in enumerate(linear.labels) if label.startswith(f"{CASING}:"))
 
 
 def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple[Array, Array]:

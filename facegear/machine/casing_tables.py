@@ -7,7 +7,8 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.casing.mounted import LETTERS, MountedCasing
-from facegear.machine.casing import CASING, CASING_MODE, body_axes, casing_start
+from facegear.machine.casing import body_axes
+from facegear.machine.casing_coordinates import CASING, CASING_MODE, casing_motion
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
 from facegear.machine.modes import Modes
@@ -18,26 +19,6 @@ FORCES = ("x_n", "y_n", "z_n", "tilt_x_n_m", "tilt_y_n_m", "tilt_z_n_m")
 """Columns of forces along and moments about the casing's axes."""
 MOTIONS = ("x_um", "y_um", "z_um", "tilt_x_urad", "tilt_y_urad", "tilt_z_urad")
 """Columns of the motions of a seat."""
-
-
-def casing_motion(machine: Machine, displacements: Array) -> Array:
-    """Return the motions of the casing among the displacements of a machine.
-
-    Parameters
-    ----------
-    machine : Machine
-        A machine on a casing.
-    displacements : (..., n) array
-        Displacements of all coordinates, m and rad.
-
-    Returns
-    -------
-    (..., c) array
-        Motions of seats, feet and modes, m and rad.
-    """
-    assert machine.casing is not None
-    first = casing_start(machine.linear)
-    return displacements[..., first : first + machine.casing.size]
 
 
 def seat_motion_table(machine: Machine, equilibrium: Equilibria) -> pd.DataFrame:
@@ -57,7 +38,7 @@ def seat_motion_table(machine: Machine, equilibrium: Equilibria) -> pd.DataFrame
     """
     assert machine.casing is not None
     mounted = machine.casing.mounted
-    motion = 1e6 * casing_motion(machine, equilibrium.displacements[0])
+    motion = 1e6 * casing_motion(machine.linear, equilibrium.displacements[0])
     rows = [(name, *motion[at]) for name, at in mounted.seats.items()]
     return pd.DataFrame(rows, columns=["seat", *MOTIONS])
 
@@ -81,7 +62,7 @@ def foot_table(machine: Machine, equilibrium: Equilibria) -> pd.DataFrame:
     """
     assert machine.casing is not None
     mounted = machine.casing.mounted
-    loads = (mounted.foot_loads @ casing_motion(machine, equilibrium.displacements[0])).reshape(-1, 6)
+    loads = (mounted.foot_loads @ casing_motion(machine.linear, equilibrium.displacements[0])).reshape(-1, 6)
     rows = list(zip(mounted.foot_names.tolist(), loads, strict=True))
     total = np.zeros(6)
     for position, load in zip(mounted.foot_positions, loads, strict=True):

@@ -110,6 +110,34 @@ def rolling_seat(shaft: RollingShaft, state: ShaftState, tilt_inertia: float | N
     return Seat(condensed_state(state), tilt_inertia, shaft, state)
 
 
+def scaled_seat(seat: Seat, factor: float) -> Seat:
+    """Return a seat on rolling bearings with all its stiffness multiplied by a factor.
+
+    Parameters
+    ----------
+    seat : Seat
+        With rolling bearings.
+    factor : float
+        On the stiffness of bearings and shaft, dimensionless.
+
+    Returns
+    -------
+    Seat
+        Linearised at the same motions.
+    """
+    shaft, state = seat.rolling, seat.state
+    assert shaft is not None and state is not None
+    new_state = replace(
+        state,
+        energy=factor * state.energy,
+        bend=np.sqrt(factor) * state.bend,
+        forces=factor * state.forces,
+        pinion_load=factor * state.pinion_load,
+        stiffness=factor * state.stiffness,
+    )
+    return rolling_seat(shaft.scale(factor), new_state, seat.tilt_inertia)
+
+
 def body_on_tangent(body: Body, state: ShaftState) -> Body:
     """Return a pinion with the tangent of its shaft, for loads without moments, as bearing.
 

@@ -15,7 +15,7 @@ import scipy.linalg
 
 from facegear.arrays import AnyArray, Array
 from facegear.errors import NotConverged
-from facegear.machine.casing import CASING, CASING_MODE
+from facegear.machine.casing_coordinates import CASING, CASING_MODE
 from facegear.machine.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
 from facegear.machine.linear_model import LinearModel, massive_motions
 

@@ -23,8 +23,10 @@ TOLERANCE = 1e-13
 ROUNDINGS = 8.0
 """Roundings of the largest terms of a sum by which forces may be out of balance at the end."""
 STEPS, STEPS_WITHOUT_GAIN = 120, 8
-"""Newton steps after which a search is given up, and after which it ends where none of them came closer to
-balance: rounding decides there, and the account of all forces afterwards."""
+"""Newton steps after which a search is given up, and after which it ends near balance where none of them came
+closer: rounding decides there, and the account of all forces afterwards."""
+NEARLY = 1e-9
+"""Force out of balance over the largest force, dimensionless, from which on rounding may decide."""
 FIRST_TIE, TIE_FALL, LAST_TIE = 1e-4, 0.03, 1e-11
 """Spring to ground over the stiffest contact, dimensionless: at first, its factor from step to step, and at
 last."""
@@ -128,11 +130,11 @@ class RollingStates:
         """
         for name in ("coordinates", "beyond", "flanks", "gradient", "size", "rounding"):
             getattr(self, name)[at] = getattr(new_states, name)
-        for coordinates, new in zip(self.inner, new_states.inner, strict=True):
-            coordinates[at] = new
-        for response, new in zip(self.responses, new_states.responses, strict=True):
+        for inner_coordinates, new_coordinates in zip(self.inner, new_states.inner, strict=True):
+            inner_coordinates[at] = new_coordinates
+        for response, new_response in zip(self.responses, new_states.responses, strict=True):
             for part in fields(response):
-                getattr(response, part.name)[at] = getattr(new, part.name)
+                getattr(response, part.name)[at] = getattr(new_response, part.name)
 
     def select(self, at: Integers) -> "RollingStates":
         """Return copies of the positions `at`.
@@ -287,7 +289,7 @@ def _find_together(problem: RollingProblem, coordinates: Array, inner: Sequence[
         worst = imbalance(problem, states)
         is_closer = worst < 0.5 * least
         least = np.minimum(least, worst)
-        since = np.where(is_closer, 0, since + 1)
+        since = np.where(is_closer | (worst > NEARLY * states.size), 0, since + 1)
         is_open = (worst > TOLERANCE * states.size + states.rounding) & (since < STEPS_WITHOUT_GAIN)
         active = active[is_open[active]]
         if not active.size:
@@ -328,7 +330,7 @@ def _step(
         -solution[:, :, -1] - (solution[:, :, :-1] @ step[:, element.at, None])[..., 0]
         for element, solution in zip(problem.elements, eliminated, strict=True)
     ]
-    return step, inner
+    return np.asarray(step), inner
 
 
 def _add_ring_tangents(linear: LinearModel, coordinates: Array, matrix: Array) -> None:

@@ -80,6 +80,24 @@ def casing(case: Case) -> bool:
     return has_casing(case.values["transmission"])
 
 
+def casing_sensors(case: Case) -> bool:
+    """Whether the casing of the machine has sensors.
+
+    They are listed in `transmission.casing.sensors`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return casing(case) and bool(case.values["transmission"]["casing"]["sensors"])
+
+
 def solid_pair(case: Case) -> Any:
     """Return section tooth_pair where the body of a face gear bends, for stages that take the pair only
     because of that body.
@@ -114,6 +132,24 @@ def drive_line(case: Case) -> bool:
     """
     transmission = case.values["transmission"]
     return transmission is not None and bool(transmission["shafts"] or transmission["torsion"])
+
+
+def rolling_bearings(case: Case) -> bool:
+    """Whether a shaft stands on rolling bearings.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    transmission = case.values["transmission"]
+    shafts = {} if transmission is None else transmission["shafts"]
+    return any(bearing["rolling"] is not None for shaft in shafts.values() for bearing in shaft["bearings"])
 
 
 def shaft_figures(case: Case) -> list[str]:

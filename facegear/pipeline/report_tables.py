@@ -46,9 +46,10 @@ REPORT_TABLES = {
     "operating_pose": ["meshes", "loads", "leaving", "check"],
     "posed_stress": ["by_mesh"],
     "shafts": ["seats", "bearings", "torsion"],
+    "bearing_life": ["loads", "stiffness", "life"],
 }
 """Tables of each stage that the report reads."""
-OWN_NAMES = ("shafts", "poses")
+OWN_NAMES = ("shafts", "poses", "bearings")
 """Folders with tables that have the same names as others of the machine."""
 
 

@@ -9,6 +9,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.number_format import count_noun
+from facegear.report.bearings import bearing_life_tables, bearing_tables
 from facegear.report.chapter_tables import (
     BEARINGS,
     BY_TORQUE,
@@ -232,6 +233,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS])]
     if title == "Strength" and "root_stress" in tables:
         report_tables = rating_and_safety_tables(tables) if "rating" in tables else []
+        report_tables += bearing_life_tables(tables)
         running_tables = (
             [Table(DYNAMIC, tables["dynamic_stress"], main=DYNAMIC_SHOWN)]
             if "dynamic_stress" in tables
@@ -252,7 +254,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return sharing_map_tables(tables)
     if title == SHAFTS:
         shaft_tables = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
-        return [table for table in shaft_tables if len(table.frame)]
+        return [*[table for table in shaft_tables if len(table.frame)], *bearing_tables(tables)]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, bearing_reactions(tables["bearings"]))] if "bearings" in tables else []
         return [*bearings, *jump_tables(tables)]

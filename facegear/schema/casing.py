@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from facegear.schema.base import Section, refuse, require_all
 
@@ -110,7 +110,14 @@ class CasingSensor(Section):
         return self
 
 
-Seat = Node | CasingPlace
+def _single_node(value: object) -> object:
+    """Return the place of a seat that is given by the number of its node alone, and lists as tuples."""
+    if isinstance(value, dict):
+        return {key: tuple(part) if isinstance(part, list) else part for key, part in value.items()}
+    return {"node": value} if isinstance(value, int) else value
+
+
+Seat = Annotated[CasingPlace, BeforeValidator(_single_node, json_schema_input_type=Node | CasingPlace)]
 
 
 class CasingSection(Section):
@@ -186,19 +193,3 @@ class CasingSection(Section):
     def files(self) -> dict[str, str | None]:
         """Names of the files by what they hold."""
         return {key: getattr(self, key) for key in ("stiffness", "mass", "damping", "nodes", "dofs")}
-
-    def location(self, seat: str) -> CasingPlace:
-        """Return the nodes of a seat.
-
-        Parameters
-        ----------
-        seat : str
-            Name of the seat.
-
-        Returns
-        -------
-        CasingPlace
-            Its node or patch.
-        """
-        location = self.seats[seat]
-        return CasingPlace(node=location) if isinstance(location, int) else location

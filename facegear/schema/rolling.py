@@ -22,6 +22,7 @@ ONE_WAY = ("angular_contact_ball", "tapered_roller")
 KEYS_OF_TYPES = {
     "groove_ratio_inner": BALLS,
     "groove_ratio_outer": BALLS,
+    "shoulder_angle_deg": BALLS,
     "contact_angle_deg": ONE_WAY,
     "loaded_by": ONE_WAY,
     "effective_length_mm": ROLLERS,
@@ -61,6 +62,9 @@ class RollingSection(Section):
         0.0, ge=-200, le=1000, description="in operation; negative: elements are pressed in"
     )
     first_element_deg: float = Field(0.0, ge=-360, le=360, description="of the first element, from x to y")
+    shoulder_angle_deg: float | None = Field(
+        None, gt=0, lt=90, description="largest contact angle that the shoulders allow; null: not checked"
+    )
     load_rating_n: float | None = Field(
         None, ge=1, le=1e9, description="C of a catalogue; null: computed as in ISO 281"
     )

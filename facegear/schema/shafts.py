@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from facegear.arrays import Array
 from facegear.rigid_body import MOTIONS, is_held
 from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.bodies import Position
 from facegear.schema.gear_body import MaterialSection
 from facegear.schema.rolling import ONE_WAY, RollingSection
 
@@ -71,11 +72,21 @@ class ShaftBearing(Section):
         None, description="in place of all stiffnesses: a rolling bearing that knows its load"
     )
 
+    position_um: Position = Field(
+        Position(), description="of the bore of a rolling bearing relative to its nominal place"
+    )
+
     @model_validator(mode="after")
     def _given_once(self) -> "ShaftBearing":
         """Check that stiffness is given once and the matrix is valid."""
-        require_all(self._not_twice, self._square)
+        require_all(self._not_twice, self._square, self._check_position)
         return self
+
+    def _check_position(self) -> None:
+        """Refuse the position of a bore of springs."""
+        if self.rolling is None and self.position_um != Position():
+            requirement = "left out of a bearing without rolling: single_pinions.<name>.position_um moves all"
+            refuse("position_um", self.position_um.model_dump(), requirement)
 
     def _not_twice(self) -> None:
         """Refuse a bearing with a matrix and single stiffnesses, with rolling and any, or with nothing."""

@@ -50,6 +50,32 @@ class BodyStrength(Section):
         return read_card(Card, card, CARDS)
 
 
+class BearingStrength(Section):
+    """Conditions and required life of rolling bearings."""
+
+    required_hours: float | None = Field(
+        None,
+        gt=0,
+        le=1e7,
+        description="life that each bearing, and all together, must reach; null: not judged",
+    )
+    contamination_factor: float | None = Field(
+        None, gt=0, le=1, description="e_C of ISO 281, from dirty to 1 (clean); null: no modified life"
+    )
+    viscosity_ratio: float | None = Field(
+        None, ge=0.1, le=100, description="kappa of ISO 281; null: no modified life"
+    )
+
+    @model_validator(mode="after")
+    def _of_modified_life(self) -> "BearingStrength":
+        """Refuse one of both conditions of the modified life without the other."""
+        keys = ("contamination_factor", "viscosity_ratio")
+        for key, partner in (keys, keys[::-1]):
+            if getattr(self, key) is None and getattr(self, partner) is not None:
+                refuse(key, None, f"given beside {partner}: the modified life needs both")
+        return self
+
+
 class Strength(Section):
     """Safety and life of the pair under a duty cycle."""
 
@@ -72,6 +98,10 @@ class Strength(Section):
     )
     min_pitting_safety: float = Field(
         default=1.0, ge=1, le=10, description="S_H min: smallest safety against pitting that is accepted"
+    )
+
+    bearings: BearingStrength | None = Field(
+        None, description="rolling bearings of the shafts; null: their lives are not judged"
     )
 
     @model_validator(mode="before")

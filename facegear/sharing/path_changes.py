@@ -9,6 +9,7 @@ from facegear.arrays import Array
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.layout import Layout, Role, Side
 from facegear.machine.machine import Machine
+from facegear.machine.mean_load import scaled_seat
 from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions
 from facegear.sharing.mapped_machine import MappedMachine
 
@@ -143,12 +144,12 @@ def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: floa
     roles : collection of Role
         Pinions whose bearings change.
     factor : float
-        On the radial stiffness, dimensionless.
+        On the radial stiffness, dimensionless; on all stiffness of shafts with rolling bearings.
 
     Returns
     -------
     Machine
-        With these bearings; clearance and axial stiffness stay.
+        With these bearings; clearance and axial stiffness of springs stay.
     """
     if factor == 1.0:
         return machine
@@ -160,9 +161,13 @@ def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: floa
         softer = replace(body, bearing=(factor * x, factor * y, z), bearing_xy=factor * body.bearing_xy)
         pinions[i] = replace(pinions[i], body=softer)
     new_machine = _with_layout(machine, replace(machine.layout, pinions=tuple(pinions)))
-    if new_machine.drive_line is None:
+    line = new_machine.drive_line
+    if line is None:
         return new_machine
-    return replace(new_machine, drive_line=new_machine.drive_line.without_shafts(numbers, new_machine.layout))
+    rolling = {i: seat for i, seat in line.seats.items() if i in numbers and seat.rolling is not None}
+    springs = line.without_shafts(numbers, new_machine.layout)
+    scaled_seats = {i: scaled_seat(seat, factor) for i, seat in rolling.items()}
+    return replace(new_machine, drive_line=replace(springs, seats={**springs.seats, **scaled_seats}))
 
 
 def with_half_backlash(machine: Machine, half: float) -> Machine:

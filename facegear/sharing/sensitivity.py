@@ -13,7 +13,8 @@ from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Kinematics, Layout, Role
-from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.machine import Machine
+from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
 from facegear.ties import size_ranks
@@ -225,7 +226,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     """Return a simplified machine with other kinematics, for the bearing scan.
 
     It keeps mesh errors, backlash, stiffness and balanced torques, and loses tilt of the gears, drive
-    line and all other errors. Elastic bodies stay only if the kinematics do.
+    line and all other errors. Elastic bodies and a casing stay only if the kinematics do.
     """
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
@@ -245,7 +246,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
         machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=line
     )
     if kinematics is not layout.kinematics:
-        return replace(machine_with_layout, bodies=None, softening=None)
+        return replace(machine_with_layout, bodies=None, softening=None, casing=None)
     if isinstance(machine.bodies, ElasticGears):
         return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
     return machine_with_layout

@@ -13,7 +13,7 @@ from math import pi
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.teeth import face_gear, pinion
+from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.design import PairDesign
 from facegear.teeth.tooth_sides import GearSide, PinionSide, ToothSide
 
@@ -66,7 +66,7 @@ class Outline:
         """Bore radius of the pinion, or height of the gear's back plane below its lowest root land, m."""
         if self.body == "pinion":
             return self.design.pinion.bore_radius
-        return float(self.root_height.min()) - self.design.face_gear.rim_thickness
+        return face_gear_fillet.back_height(self.design)
 
     @property
     def has_chamfer(self) -> bool:

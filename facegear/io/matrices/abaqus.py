@@ -76,7 +76,9 @@ def read_substructure(path: Path, quantity: str) -> LabelledMatrix | None:
         For a file that is not valid.
     """
     lines = read_lines(path)
-    nodes, dofs, values = _listed_nodes(lines), [], None
+    nodes = _listed_nodes(lines)
+    dofs: list[list[int]] = []
+    values: list[float] | None = None
     type_name = {"stiffness": "STIFFNESS", "mass": "MASS", "damping": "VISCOUSDAMPING"}[quantity]
     state, positions = "", {1: 0}
     for line in lines:
@@ -115,7 +117,8 @@ def read_substructure(path: Path, quantity: str) -> LabelledMatrix | None:
     matrix = np.zeros((size, size))
     matrix[np.tril_indices(size)] = values
     matrix += np.tril(matrix, -1).T
-    return LabelledMatrix(*np.array(rows, np.int64).T, sparse.csc_array(matrix))
+    node, direction = np.array(rows, np.int64).T
+    return LabelledMatrix(node, direction, sparse.csc_array(matrix))
 
 
 def _listed_nodes(lines: list[str]) -> list[int]:

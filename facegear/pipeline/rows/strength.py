@@ -22,6 +22,8 @@ GEARS = {"gears": ComputedValue(arguments.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
 """Root stress and contact by flank."""
 
+TEXT_OF_BEARINGS = ("pinion", "bearing", "bin")
+"""Columns of text in tables of rolling bearings."""
 POSED_CONTACT = {
     "posed_contacts": From("posed_stress", "contacts", when=conditions.poses),
     "posed_by_torque": From("posed_stress", "by_torque", when=conditions.poses),
@@ -104,6 +106,35 @@ LOAD_ROWS = (
                 "strength/duty_spectrum.csv", "facegear.strength.columns:DUTY_SPECTRUM_COLUMNS"
             ),
         },
+    ),
+    Stage(
+        name="bearing_life",
+        title="Loads, stiffness and life of the rolling bearings",
+        machine="inputs",
+        needs={**MACHINE, **SPEED, "strength": "strength"},
+        upstream={**HARMONICS, **BODIES},
+        files={
+            "loads": File(
+                "bearings/loads.csv", "facegear.strength.bearing_rating:LOAD_FINITE", text=TEXT_OF_BEARINGS
+            ),
+            "stiffness": File(
+                "bearings/stiffness.csv", ("torque_n_m", *"xyz"), text=(*TEXT_OF_BEARINGS, "motion")
+            ),
+            "life": File("bearings/life.csv", ("hours",), text=("pinion", "bin", "basis")),
+            "over_torque": File(
+                "bearings/over_torque.csv",
+                "facegear.strength.bearing_rating:CURVE_FINITE",
+                text=("pinion", "bearing"),
+            ),
+        },
+        figures=Figures(
+            draw="facegear.report.figures.bearings:bearing_figures",
+            names=("bearings",),
+            chapter="load_sharing",
+            upstream=from_stage("bearing_life", "over_torque"),
+        ),
+        condition=machine_conditions.rolling_bearings,
+        local=True,
     ),
     Stage(
         name="machine_loss",

@@ -20,8 +20,8 @@ from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
-NOT_STAGES = {"displaced_contact", "scene"}
-"""Names in SPUR_ONLY of answers from Python that no stage gives."""
+NOT_STAGES = {"displaced_contact"}
+"""Name in SPUR_ONLY of an answer from Python that no stage gives."""
 
 
 def make_config(name: str, **changes) -> dict:

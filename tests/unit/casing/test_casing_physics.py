@@ -1,4 +1,4 @@
-"""What a casing must do whatever its numbers: springs in series, limits, units, whole elements, damping."""
+"""Casings do what they must for any numbers: springs in series, limits, units, whole elements, damping."""
 
 from dataclasses import replace
 
@@ -285,7 +285,7 @@ def test_negative_stiffness_and_free_casings_are_refused():
     names, places = ["p0"], [(0.09, 0, 0)]
     with pytest.raises(InvalidInput, match="negative eigenvalues"):
         mount_springs(np.array([1e8, 1e8, -1e8, 1e5, 1e5, 1e5]), names, places)
-    with pytest.raises(InvalidInput, match="1 free motions"):
+    with pytest.raises(InvalidInput, match="1 free motion"):
         mount_springs(np.array([1e8, 1e8, 0.0, 1e5, 1e5, 1e5]), names, places)
 
 

@@ -10,12 +10,14 @@ from whole_energy import WholeMachine
 
 from facegear.bearings.life import reference_life
 from facegear.bearings.response import element_loads
-from facegear.bearings.shaft import RollingShaft
+from facegear.bearings.shaft import RollingShaft, find_shaft_equilibrium
 from facegear.machine.flanks import flank_edges
+from facegear.machine.layout import Role
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.statics import bearing_forces, mean_equilibrium
 from facegear.parts.shafts import Segment
+from facegear.sharing.path_changes import with_scaled_bearings
 
 
 @pytest.fixture(scope="module")
@@ -162,3 +164,19 @@ def test_tangents_are_derivatives_of_the_statics_by_a_small_load(public):
     difference = moved[0].displacements[0] - moved[1].displacements[0]
     turned = linear.rows @ (difference - expected)
     assert np.allclose(turned, 0.0, atol=1e-5 * np.abs(linear.rows @ expected).max())
+
+
+def test_stiffer_bearings_and_shaft_move_the_pinion_less_under_its_load(public):
+    machine = public[0]
+    stiff = with_scaled_bearings(machine, (Role.INPUT,), 4.0)
+    assert with_scaled_bearings(machine, (Role.INPUT,), 1.0) is machine
+    load = np.array([5000.0, 2000.0, 0.0, 0.0, 0.0])
+    shafts = [made.drive_line.seats[0].rolling for made in (machine, stiff)]
+    soft_state, stiff_state = (
+        find_shaft_equilibrium(shaft, part * load) for shaft, part in zip(shafts, (1.0, 4.0), strict=True)
+    )
+    assert np.allclose(stiff_state.pinion, soft_state.pinion, rtol=1e-7, atol=1e-15)
+    assert np.allclose(stiff_state.forces, 4.0 * soft_state.forces, rtol=1e-7, atol=1e-6)
+    assert mean_equilibrium(stiff).forces[0, 3] > mean_equilibrium(machine).forces[0, 3]
+    tangent = at_mean_load(stiff).drive_line.seats[0].state
+    assert np.allclose(tangent.stiffness, tangent.stiffness.T)

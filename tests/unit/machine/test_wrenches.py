@@ -33,10 +33,13 @@ from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC, PRINTED_KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Pinion, Role, Side, Tilt
 from facegear.machine.loaded_modes import loaded_modes
-from facegear.machine.machine import Damping, Machine, balanced_torques
+from facegear.machine.machine import Damping, Machine
 from facegear.machine.mesh_phases import place_lags
+from facegear.machine.shaft_tables import load_table, seat_table
 from facegear.machine.statics import bearing_loads, equilibria, mean_equilibrium
+from facegear.machine.torques import balanced_torques
 from facegear.parts.shafts import CondensedShaft
+from facegear.rigid_body import carry_motion
 from facegear.teeth.family_contact import contact_line
 
 FLAT = Harmonics(np.zeros(1), np.array([MESH]))
@@ -201,6 +204,24 @@ def outside(machine, teeth, loads):
         force += load * part.motion
         moment += load * (np.cross(part.centre, part.motion) + part.turn)
     return force, moment
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bearings_of_a_shaft_carry_the_forces_and_moments_of_the_meshes_of_its_pinion(seed):
+    machine, teeth = random_machine(np.random.default_rng([59, seed]), everything_tilts=True)
+    line, found = machine.drive_line, mean_equilibrium(machine)
+    table = load_table(machine, line, found).set_index("pinion")
+    columns = ["x_n", "y_n", "z_n", "tilt_x_n_m", "tilt_y_n_m"]
+    wrenches = -flank_rows(machine, teeth).T @ found.flank_forces[0]
+    size = found.flank_forces.max()
+    for pinion in line.tilting:
+        loads = table.loc[machine.layout.pinions[pinion].name, columns].to_numpy(float)
+        # Bearings stand at the beginning and at 120 mm, the pinion at 50 mm.
+        carried = sum(load @ carry_motion(at - 0.05) for load, at in zip(loads, (0.0, 0.12), strict=True))
+        agree(carried, wrenches[line.motions(pinion)], absolute=1e-9 * size)
+        seat = seat_table(machine, line, found).set_index("pinion").loc[machine.layout.pinions[pinion].name]
+        moved = 1e-6 * seat[["x_um", "y_um", "z_um", "tilt_x_urad", "tilt_y_urad"]].to_numpy(float)
+        agree(moved, found.displacements[0, line.motions(pinion)], absolute=1e-12)
 
 
 def mirror_shaft(shaft: CondensedShaft) -> CondensedShaft:

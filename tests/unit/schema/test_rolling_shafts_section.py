@@ -64,6 +64,16 @@ def test_a_positive_preload_stiffens_and_endplay_leaves_the_pair_loose():
     assert not loose.forces.any() and not loose.stiffness.any()
 
 
+def test_a_bore_out_of_place_moves_the_shaft_and_loads_a_bearing_beside_two_others():
+    moved = {"position_um": {"x": 20, "y": -5}}
+    pair = built({"rolling": BALL, **moved}, {"rolling": BALL, **moved})
+    state = find_shaft_equilibrium(pair, np.array([500.0, 0.0, 0.0, 0.0, 0.0]))
+    nominal = find_shaft_equilibrium(built(BALL, BALL), np.array([500.0, 0.0, 0.0, 0.0, 0.0]))
+    assert np.allclose(state.pinion - nominal.pinion, [20e-6, -5e-6, 0, 0, 0], rtol=0, atol=1e-10)
+    strained = built(BALL, {"rolling": BALL, "position_um": {"x": 60, "y": 0}}, BALL)
+    assert find_shaft_equilibrium(strained, np.zeros(5)).forces[1, 0] < -100.0
+
+
 def test_a_tilt_of_the_shaft_tilts_both_inner_rings_and_lifts_the_second():
     made = built(BALL, ROLLER)
     tilted = made.rigid @ np.array([0.0, 0.0, 0.0, 0.0, 1e-3])
@@ -83,6 +93,7 @@ REFUSALS = [
     ((BALL,), {}, 'bearings = "at 10 mm"'),
     ((AHEAD, AHEAD), {}, 'loaded_by = "+z": must be the opposite'),
     ((AHEAD, ROLLER), {}, "bearings[0].rolling.loaded_by"),
+    (({**SPRING, "position_um": {"x": 3, "y": 0}}, BALL), {}, "bearings[0].position_um"),
     (({"radial_n_per_m": 1e8, "rolling": BALL}, BALL), {}, "radial_n_per_m = 100000000.0: must be left out"),
     ((BALL, BALL), {"preload": {"bearings": ["A", "C"], "axial_um": 3}}, 'preload.bearings = "C"'),
     ((BALL, BALL), {"preload": {"bearings": ["A", "A"], "axial_um": 3}}, "two different letters"),

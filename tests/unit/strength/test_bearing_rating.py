@@ -1,0 +1,182 @@
+"""Loads, stiffness and life of rolling bearings by bin of a duty cycle, from the question of a user on."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from rolling_bearings import P1
+from ruamel.yaml import YAML
+from three_pinions import STIFFNESS, TEETH, TEXT
+
+from facegear.bearings.life import BASIS, load_rating
+from facegear.build.machine import MachineInputs
+from facegear.errors import ConfigError
+from facegear.pipeline.stages.bearing_life import bearing_life
+from facegear.report.bearings import bearing_life_tables, bearing_tables, largest_change
+from facegear.report.figures.bearings import bearing_figures
+from facegear.schema.base import parse
+from facegear.schema.strength import BearingStrength, DutySection
+from facegear.schema.transmission import Transmission
+
+BALL = {"card": "deep_groove_6210", "clearance_diametral_um": 15}
+ROLLER = {"card": "cylindrical_roller_nu210", "clearance_diametral_um": 30}
+SHAFT = {
+    "segments": [{"length_mm": 130, "diameter_mm": 50}],
+    "pinion_mm": 60,
+    "bearings": [{"at_mm": 10, "rolling": BALL}, {"at_mm": 120, "rolling": ROLLER}],
+}
+
+
+class Duty:
+    """The part of section strength that the stage reads."""
+
+    def __init__(self, *bins, bearings=None, application_factor=1.0):
+        self.duty = [
+            DutySection(torque_n_m=torque, speed_rpm=speed, hours=hours) for torque, speed, hours in bins
+        ]
+        self.bearings = None if bearings is None else BearingStrength(**bearings)
+        self.application_factor = application_factor
+
+
+def inputs(**changes):
+    values = {**YAML(typ="safe").load(TEXT), "shafts": {"input": {**SHAFT, **changes}}}
+    return MachineInputs(transmission=parse(Transmission, values), teeth=TEETH, harmonics=STIFFNESS)
+
+
+def answers(*bins, **more):
+    duty = Duty(*bins, **more) if bins else None
+    return bearing_life(inputs(), 3000.0, duty).content
+
+
+CYCLE = ((100.0, 2000.0, 60.0), (250.0, 3000.0, 40.0))
+
+
+@pytest.fixture(scope="module")
+def rated():
+    conditions = {"required_hours": 5000.0, "contamination_factor": 0.5, "viscosity_ratio": 1.8}
+    return answers(*CYCLE, bearings=conditions)
+
+
+def of(table, pinion, letter, label):
+    rows = table[(table["pinion"] == pinion) & (table["bearing"] == letter) & (table["bin"] == label)]
+    assert len(rows) == 1
+    return rows.iloc[0]
+
+
+def test_every_bearing_has_a_row_for_the_mean_load_and_each_bin(rated):
+    assert rated["loads"].groupby(["pinion", "bearing"])["bin"].apply(list).tolist() == 4 * [
+        ["mean", "1", "2"]
+    ]
+
+
+def test_lives_over_the_cycle_are_those_of_its_bins_by_miners_rule(rated):
+    life = rated["life"]
+    bins = [of(life, "one", "A", label) for label in "12"]
+    whole = of(life, "one", "A", "all")
+    for name in ("l10_hours", "l10r_hours"):
+        expected = 100.0 / sum(row["hours"] / row[name] for row in bins)
+        assert whole[name] == pytest.approx(expected, rel=1e-12)
+    assert sum(row["damage_share"] for row in bins) == pytest.approx(1.0)
+
+
+def test_the_basic_life_follows_from_the_radial_load_and_the_rating(rated):
+    load, row = of(rated["loads"], "one", "B", "2"), of(rated["life"], "one", "B", "2")
+    million = (row["load_rating_n"] / load["radial_n"]) ** (10.0 / 3.0)
+    assert row["l10_million"] == pytest.approx(million, rel=1e-9)
+    assert row["l10_hours"] == pytest.approx(million * 1e6 / (60.0 * 3000.0), rel=1e-9)
+    assert of(rated["life"], "one", "A", "2")["load_rating_n"] == pytest.approx(load_rating(P1), rel=1e-9)
+
+
+def test_all_bearings_together_live_shorter_than_the_shortest(rated):
+    life = rated["life"]
+    whole = life[life["bin"] == "all"]
+    assert whole["pinion"].iloc[-1] == "all bearings"
+    assert whole["l10r_hours"].iloc[-1] < whole["l10r_hours"].iloc[:-1].min()
+
+
+def test_a_required_life_is_judged_and_standards_not_at_hand_are_marked(rated):
+    life = rated["life"]
+    whole = life[life["bin"] == "all"]
+    verdicts = np.where(whole["l10r_hours"] >= 5000.0, "yes", "no")
+    assert whole["is_enough"].tolist() == verdicts.tolist()
+    assert set(verdicts) == {"yes", "no"}
+    assert all(BASIS["basic"] in basis and "not at hand" in basis for basis in life["basis"])
+
+
+def test_a_modified_life_needs_the_fatigue_load_limit_of_the_bearing(rated):
+    assert rated["life"]["modified_hours"].isna().all()
+    limited = {
+        **SHAFT,
+        "bearings": [{**SHAFT["bearings"][0], "rolling": {**BALL, "fatigue_load_limit_n": 980}}],
+    }
+    limited["bearings"].append(SHAFT["bearings"][1])
+    conditions = Duty(*CYCLE, bearings={"contamination_factor": 0.5, "viscosity_ratio": 1.8})
+    life = bearing_life(inputs(**limited), 3000.0, conditions).content["life"]
+    first, second = of(life, "one", "A", "all"), of(life, "one", "B", "all")
+    assert first["modified_hours"] > 0.0 and BASIS["modified"] in first["basis"]
+    assert np.isnan(second["modified_hours"]) and BASIS["modified"] not in second["basis"]
+
+
+def test_stiffness_is_given_at_the_mean_load_and_at_both_ends_of_the_cycle(rated):
+    stiffness = rated["stiffness"]
+    assert stiffness["bin"].unique().tolist() == ["mean", "1", "2"]
+    matrix = stiffness[(stiffness["pinion"] == "one") & (stiffness["bearing"] == "A")]
+    matrix = matrix[matrix["bin"] == "2"][["x", "y", "z", "tilt_x", "tilt_y"]].to_numpy()
+    assert np.allclose(matrix, matrix.T, rtol=1e-9) and np.linalg.eigvalsh(matrix).min() > 0.0
+    assert 0.05 < largest_change(stiffness) < 1.0
+
+
+def test_without_a_duty_cycle_the_own_torques_are_the_only_bin():
+    content = answers()
+    assert content["life"]["bin"].unique().tolist() == ["mean", "all"]
+    assert content["stiffness"]["bin"].unique().tolist() == ["mean"]
+    assert content["life"]["is_enough"].eq("").all()
+
+
+def test_the_application_factor_raises_the_loads():
+    plain, raised = (answers(*CYCLE, application_factor=factor)["loads"] for factor in (1.0, 1.25))
+    assert of(raised, "one", "A", "2")["torque_n_m"] == 312.5
+    assert of(raised, "one", "A", "2")["radial_n"] > 1.2 * of(plain, "one", "A", "2")["radial_n"]
+
+
+def test_the_stiffness_along_the_load_grows_with_the_torque(rated):
+    rows = rated["over_torque"]
+    rows = rows[(rows["pinion"] == "one") & (rows["bearing"] == "A")]
+    assert (np.diff(rows["radial_stiffness_n_per_m"]) > 0.0).all() and len(rows) == 15
+
+
+def test_bearings_that_do_the_same_are_drawn_once(rated):
+    figure = bearing_figures(rated["over_torque"])[0]
+    names = [mark.name for mark in figure.panels[0].marks[1:]]
+    assert names == ["one A", "one B", "two A", "two B"]
+    only = rated["over_torque"][rated["over_torque"]["pinion"] == "one"]
+    twins = pd.concat([only, only.assign(pinion="three")])
+    names = [mark.name for mark in bearing_figures(twins)[0].panels[0].marks[1:]]
+    assert names == ["one A, three A", "one B, three B"]
+
+
+def test_the_report_says_how_much_stiffness_changes_and_shows_lives_once(rated):
+    tables = {f"bearings_{name}": table for name, table in rated.items()}
+    captions = [table.caption for table in bearing_tables(tables)]
+    assert len(captions) == 4 and any("changes by up to" in caption for caption in captions)
+    assert len(bearing_tables({**tables, "root_stress": None})) == 2
+    assert len(bearing_life_tables(tables)) == 2 and bearing_life_tables({}) == []
+
+
+SMALL = {"card": "deep_groove_6203"}
+OVERLOADS = [
+    ({"card": "deep_groove_6203"}, r"bearings\[0\]\.rolling = .* MPa on one at 400 N m.*4200 MPa.*ISO 76"),
+    ({**BALL, "shoulder_angle_deg": 0.001}, "must be loaded up to shoulder_angle_deg = 0.001"),
+]
+
+
+@pytest.mark.parametrize(("rolling", "line"), OVERLOADS)
+def test_overloaded_bearings_are_refused_with_their_key(rolling, line):
+    bearings = [{"at_mm": 10, "rolling": rolling}, SHAFT["bearings"][1]]
+    with pytest.raises(ConfigError, match=line):
+        bearing_life(inputs(bearings=bearings), 3000.0, None)
+
+
+def test_a_machine_on_springs_has_no_such_answer():
+    springs = [{"at_mm": at, "radial_n_per_m": 2e8, "axial_n_per_m": 1e8} for at in (10, 120)]
+    with pytest.raises(ConfigError, match="given with rolling bearings"):
+        bearing_life(inputs(bearings=springs), 3000.0, None)
