@@ -110,12 +110,14 @@ def refused_moves(names: Iterable[str], values: Mapping[str, Any]) -> list[Confi
         ("tolerances.causes.moves", "tolerances_chunk", _moved_by(values, "tolerances", "causes", "moves")),
         ("search.variables.sets", "search_island", _moved_by(values, "search", "variables", "sets")),
     ):
-        refused = {f"{PAIR}{kind}" for kind in SPUR_ONLY.get(stage, ())} - {f"{PAIR}{FLANKS}"}
-        if FLANKS in SPUR_ONLY.get(stage, ()):
-            refused |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
+        # teeth that vary have a contact of their own, which their stage solves itself
+        kinds = {kind for name in (stage, "compliance", "contact") for kind in SPUR_ONLY.get(name, ())}
+        refused_paths = {f"{PAIR}{kind}" for kind in kinds - {FLANKS}}
+        if FLANKS in kinds:
+            refused_paths |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
         requirement = f"another key, as stage {stage} cannot take such teeth yet"
         if stage in stages:
-            errors += [ConfigError(key, moved, requirement) for moved in moved_keys if moved in refused]
+            errors += [ConfigError(key, path, requirement) for path in moved_keys if path in refused_paths]
     return errors
 
 

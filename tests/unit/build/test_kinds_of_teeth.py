@@ -154,5 +154,6 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
     monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ALL_KINDS)
     with pytest.raises(ConfigError, match=r"causes\.moves = .*pinion_axial_um.*: must be another key"):
         require_teeth("tolerances_chunk", config.model_dump(mode="json"))
-    monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ())
+    for name in ("tolerances_chunk", "compliance", "contact"):
+        monkeypatch.setitem(SPUR_ONLY, name, ())
     require_teeth("tolerances_chunk", config.model_dump(mode="json"))
