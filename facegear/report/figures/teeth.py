@@ -234,6 +234,17 @@ def separation(
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     path = 1e3 * contact["path_y"], height[rows, height.shape[1] // 2]
+    if not has_spur_teeth(record["design_si"]):
+        # the path moves along the face, and places along the pinion are no radii: both follow from the map
+        spots = [
+            [
+                np.interp(y, contact["contour_y"][row][on], part[row][on], np.nan, np.nan)
+                for part in (radius, height)
+            ]
+            for row, y in zip(rows, contact["path_y"], strict=True)
+            if (on := is_facing[row]).any()
+        ]
+        path = np.array(spots)[:, 0], np.array(spots)[:, 1]
     marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
     gap_record = record["smallest_gap"]
     title = (
