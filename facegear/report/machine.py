@@ -9,6 +9,7 @@ from facegear.number_format import count_noun, format_number
 from facegear.report.data_sheet import DATA_SHEET, ROUNDING_OF_POWER, data_sheet_table, machine_numbers
 from facegear.report.page import Chapter, Picture
 from facegear.report.table import Table
+from facegear.schema.tooth_pair import flank_angles_deg
 
 SOURCES = {
     "fem": "computed by finite elements",
@@ -286,7 +287,10 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
     power balance; for a config without a transmission only the teeth.
     """
     pair, transmission = values["tooth_pair"], values["transmission"]
-    teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
+    angles = " and ".join(
+        f"{angle:g}" for angle in dict.fromkeys(flank_angles_deg(pair["pressure_angle_deg"]))
+    )
+    teeth = f"module {pair['module_mm']:g} mm, pressure angle {angles} deg. "
     source = SOURCES[values["mesh_stiffness"]["source"]]
     if transmission is None:
         return (
