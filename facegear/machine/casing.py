@@ -359,11 +359,11 @@ def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple
         around = layout.angles[body] - first
         cosine, sine = np.cos(around), np.sin(around)
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
-        place = layout.pinion_middle if distance is None else distance
+        along = layout.pinion_middle if distance is None else distance
         if layout.kind is None:
-            return axes, place * axes[2]
+            return axes, along * axes[2]
         axes = layout.kind.lean @ axes
-        return axes, layout.kind.offset * axes[0] + place * axes[2]
+        return axes, layout.kind.offset * axes[0] + along * axes[2]
     cosine, sine = np.cos(first), np.sin(first)
     axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions

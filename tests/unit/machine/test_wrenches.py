@@ -10,6 +10,7 @@ from free_machines import natural_modes
 from lumped_machines import make_layout as make_spur_layout
 from lumped_machines import make_machine as make_spur_machine
 from public_teeth import NAMES, PARAMETERS, public_design, public_numbers
+from rolling_machines import S1, machine_on, public_layout
 from wrench_machines import (
     MESH,
     Teeth,
@@ -414,3 +415,19 @@ def test_rows_of_spur_teeth_are_those_of_their_closed_form_bit_for_bit(sides, be
     assert np.array_equal(
         layout.kinematics.flank_rows(layout), np.concatenate([apart + along, apart - along])
     )
+
+
+@pytest.mark.parametrize("helix", [12.0, -12.0])
+def test_rolling_bearings_carry_the_whole_wrench_of_a_helical_pinion(helix):
+    teeth = Teeth(20, 60, 3e-3, (radians(25), radians(23)), radians(helix), radians(1), middle=0.095)
+    spur = public_layout()
+    layout = make_layout(teeth, spur.pinions, spur.gears)
+    machine = machine_on({0: S1, 2: S1}, (600.0, 0.0, 0.0), layout, {0: 1.5e-3, 2: 1.5e-3})
+    found = mean_equilibrium(machine)
+    wrenches = -flank_rows(machine, teeth).T @ found.flank_forces[0]
+    size = found.flank_forces.max()
+    for pinion in (0, 2):
+        loads = found.shafts[pinion].forces[0]
+        carried = sum(load @ carry_motion(at - 0.06) for load, at in zip(loads, (0.01, 0.12), strict=True))
+        agree(carried, wrenches[machine.drive_line.motions(pinion)], absolute=1e-9 * size)
+    assert abs(wrenches[2]) > 0.1 * size
