@@ -18,7 +18,7 @@ from facegear.arrays import Array, Integers
 from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
-from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, condense_massless
+from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, keep_slow_modes
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
@@ -45,9 +45,10 @@ class Casing:
         Shafts of pinions by their numbers, for those on several bearings.
     bearing_places : mapping of int to array
         Places of the bearings of these shafts along the pinion's axis from the gears' axis, (bearings,), m.
-    is_condensed : bool
-        Whether motions of the casing without mass are no coordinates: they follow the others statically, as
-        motion in time needs it.
+    frequency_limit : float or None
+        Modes of the casing below the bodies, which stand still, are coordinates up to this frequency, Hz;
+        motions of other modes and without mass follow statically, as motion in time takes them. None: seats
+        and modes of the mounted casing are the coordinates.
     """
 
     layout: Layout
@@ -55,7 +56,7 @@ class Casing:
     bearing_seats: Mapping[int, tuple[str, ...]]
     shafts: Mapping[int, SeatedShaft]
     bearing_places: Mapping[int, Array]
-    is_condensed: bool = False
+    frequency_limit: float | None = None
 
     def __post_init__(self) -> None:
         for names in self.bearing_seats.values():
@@ -287,7 +288,7 @@ class Casing:
             spin=_pad_spin(base_model.spin, new),
             seat_tilts=self._seat_tilts(old, line),
         )
-        return condense_massless(model) if self.is_condensed else model
+        return model if self.frequency_limit is None else keep_slow_modes(model, self.frequency_limit)
 
     def seat_motion(self, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
         """Return the change of unknowns of a machine on the casing to motions against its seats.
