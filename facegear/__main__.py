@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import MISSING, fields
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,9 +14,10 @@ from tempfile import TemporaryDirectory
 from typing import NoReturn
 
 import facegear
-from facegear.build.early_checks import limits_in_words
+from facegear.build.cases import expand_cases
+from facegear.build.face_limits import FaceNumbers, limits_in_words
 from facegear.build.load import load_config, read_layers
-from facegear.checking import check_config
+from facegear.checking import check_config, refused_teeth
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.exchange.rexs_pinions import RexsPinions, known_of_rexs
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
@@ -95,7 +97,7 @@ def parser() -> argparse.ArgumentParser:
         Parser whose result holds the arguments, the command's name as `name`, and as `command` its
         function, which takes the result and returns an exit code.
     """
-    top = Parser("facegear", description="Spur pinion and face gear transmissions.")
+    top = Parser("facegear", description="Pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
     commands = top.add_subparsers(required=True, metavar="command", dest="name")
     new = commands.add_parser("new", help="write a config to start from, asking for what is not given")
@@ -142,11 +144,12 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("config", type=Path, help=CONFIG)
     check.set_defaults(command=_check)
     limits = commands.add_parser("limits", help="between which radii the face of a gear may lie")
-    for name, default in LIMITS.items():
-        kind = int if "teeth" in name else float
+    for field in fields(FaceNumbers):
+        kind = int if "teeth" in field.name else float
+        default = None if field.default is MISSING else field.default
         text = "required" if default is None else f"({default:g})"
         limits.add_argument(
-            flag(name), type=reader(kind), required=default is None, default=default, help=text
+            flag(field.name), type=reader(kind), required=default is None, default=default, help=text
         )
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
@@ -157,20 +160,6 @@ def parser() -> argparse.ArgumentParser:
     )
     compare.set_defaults(command=_compare)
     return top
-
-
-LIMITS = {
-    **dict.fromkeys(("pinion_teeth", "face_gear_teeth", "module_mm")),
-    "pressure_angle_deg": 25.0,
-    "shaper_teeth": 0,
-    "pinion_addendum_modules": 1.0,
-    "pinion_dedendum_modules": 1.25,
-    "profile_shift_modules": 0.0,
-    "gear_addendum_modules": 1.0,
-    "shaper_addendum_modules": 1.25,
-    "shaper_tip_rounding_modules": 0.0,
-}
-"""Arguments of `limits` and their defaults, if any. A shaper of 0 teeth has three more than the pinion."""
 
 
 def installed_version() -> str:
@@ -214,13 +203,15 @@ def _new(options: argparse.Namespace) -> int:
         draft = Path(folder) / options.config.name
         draft.write_text(machine.text, encoding="utf-8")
         try:
-            load_config(draft)
+            cases = expand_cases(load_config(draft))
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
     _say_if_new(options.config.parent)
     with atomic_path(options.config) as temporary:
         temporary.write_text(machine.text, encoding="utf-8")
     print(*rexs.notes, *machine.expectations, sep="\n")
+    for line in refused_teeth(next(iter(cases.values())), cases):
+        print(f"{options.config}: not computed yet: {line}")
     print(f"{options.config}: written; `facegear report {options.config}` computes it")
     return 0
 
@@ -352,10 +343,9 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _limits(options: argparse.Namespace) -> int:
-    """Print between which radii the face of a gear may lie, from the numbers of LIMITS; return exit
-    code 0.
-    """
-    print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
+    """Print between which radii the face of a gear may lie, from FaceNumbers; return exit code 0."""
+    numbers = {field.name: getattr(options, field.name) for field in fields(FaceNumbers)}
+    print(limits_in_words(FaceNumbers(**numbers)))
     return 0
 
 

@@ -8,8 +8,11 @@ from typing import Any
 from facegear.build.cases import expand_cases
 from facegear.build.config import Config
 from facegear.build.early_checks import EarlyFindings, machine_findings, pair_findings
+from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import notes
-from facegear.pipeline.needs import idle_keys
+from facegear.pipeline.needs import idle_keys, stages_before
+from facegear.pipeline.stage import Case
+from facegear.pipeline.table import STAGES
 
 MOST_PAIRS = 4
 """Different tooth pairs of a config whose geometry is analysed, at about 0.3 s each."""
@@ -60,7 +63,8 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
         case: [*_geometry(case, cases), machine_findings(values)] for case, values in cases.items()
     }
     by_case = {
-        case: [line for part in parts for line in part.failures] for case, parts in parts_by_case.items()
+        case: [*refused_teeth(cases[case], cases), *(line for part in parts for line in part.failures)]
+        for case, parts in parts_by_case.items()
     }
     remarks = {
         case: [line for part in parts for line in part.remarks] for case, parts in parts_by_case.items()
@@ -73,6 +77,27 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
     left = [f"geometry: {pairs - MOST_PAIRS} more tooth pairs of the studies are not looked at"]
     lines = (*facts, *_lines(remarks), *_lines(note_lines, "note: "), *idle, *left * (pairs > MOST_PAIRS))
     return CheckedConfig(tuple(cases), tuple(_lines(by_case)), lines)
+
+
+def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Find the keys by which the teeth of a case are of a kind that stages of its run cannot take yet.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the case.
+    cases : mapping
+        Plain values of all cases of its config by id.
+
+    Returns
+    -------
+    list of str
+        One line for each key, with its value, what is allowed and the first stage that refuses it.
+    """
+    case = Case(values, cases)
+    wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
+    names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])
+    return [str(error) for error in refused_keys(names, values["tooth_pair"]).values()]
 
 
 def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:

@@ -20,6 +20,11 @@ QUESTIONS: dict[str, tuple[type[int] | type[float], float | None, str]] = {
 """Questions of `new`: kind of number, default if there is one, and the text."""
 
 OPTIONS: dict[str, tuple[type[int] | type[float], str]] = {
+    "coast_pressure_angle_deg": (float, "pressure angle of the coast flank, if not that of the drive flank"),
+    "helix_angle_deg": (float, "helix angle of the rack, positive for right-hand pinions (0)"),
+    "taper_angle_deg": (float, "taper angle of the rack, positive for pinions that grow outwards (0)"),
+    "shaft_angle_deg": (float, "angle between the axes (90)"),
+    "offset_mm": (float, "offset of the axes (0)"),
     "profile_shift_modules": (float, "profile shift of the pinions"),
     "pinion_addendum_modules": (float, "addendum of the pinions"),
     "pinion_dedendum_modules": (float, "dedendum of the pinions' rack"),

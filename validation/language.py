@@ -46,6 +46,7 @@ PUBLIC_NAMES = {
     "facegear/gearbox.py::Gearbox.following::name": "answer of a gearbox",
     "facegear/pipeline/stages/sharing.py::following::name": "stage of that answer",
     "facegear/pipeline/displaced_contact.py::DisplacedContact.loaded::name": "answer of a displaced contact",
+    "facegear/schema/casing.py::CasingFoot.held::name": "key of the config",
     "facegear/pipeline/results/machine.py::OperatingPoseResult.leaving::name": "table of a result",
     "facegear/pipeline/results/motion.py::BranchesResult.swept::name": "table of a result",
 }

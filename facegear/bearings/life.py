@@ -123,7 +123,7 @@ def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
     radial, thrust = np.hypot(force[..., 0], force[..., 1]), np.abs(force[..., 2])
     limit, radial_factor, thrust_factor = _load_factors(bearing, thrust)
     with_thrust = radial_factor * radial + thrust_factor * thrust
-    with np.errstate(invalid="ignore"):  # no thrust counts (e infinite) where there is no radial load either
+    with np.errstate(invalid="ignore"):  # e is infinite, and a radial load of 0 leaves no number
         return np.where(thrust <= limit * radial, radial, with_thrust)
 
 

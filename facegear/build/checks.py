@@ -7,18 +7,19 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.build.lumped_model import given_torques, other_gear_torque
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import is_contact_quantity
-from facegear.schema.changes import TEETH, moves_pair
+from facegear.schema.changes import moves_pair
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.unloaded_contact import normal_backlash
+from facegear.teeth.unloaded_contact import gear_backlash, normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -43,9 +44,9 @@ def pair_teeth(pair: ToothPair) -> ToothNumbers:
     Returns
     -------
     ToothNumbers
-        Tooth numbers, base radius (m) and pressure angle (rad).
+        Tooth numbers, arm of the drive flank's force (m) and pressure angle (rad).
     """
-    return ToothNumbers.of_teeth(*(getattr(pair, key) for key in TEETH))
+    return ToothNumbers.of_config(pair.model_dump())
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
@@ -307,9 +308,11 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    assembly = pair.assembly.model_dump()
+    assembly, design = pair.assembly.model_dump(), pair_design(pair)
     try:
-        backlash = normal_backlash(pair_design(pair), tuple(beside))
+        backlash = (
+            normal_backlash(design, tuple(beside)) if design.is_spur else _normal_backlash_of_family(design)
+        )
     except NotConverged:
         raise ConfigError(
             "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
@@ -324,6 +327,15 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
             "tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, requirement
         )
     return 1e6 * max(backlash, 0.0)
+
+
+def _normal_backlash_of_family(design: PairDesign) -> float:
+    """Return the backlash (m) of unmodified flanks as assembled, along the drive flank's normal."""
+    arc = gear_backlash(design.family, design.assembly)
+    if arc is None:
+        attempts = "no normal of the gear touches the pinion's base cylinder"
+        raise NotConverged("backlash", "the assembly", attempts)
+    return arc / design.family.gear_pitch_radius * design.gear_normal_arm
 
 
 def memory_here() -> float:

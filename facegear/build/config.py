@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
+from facegear.build.casing import check_casing, content
 from facegear.build.checks import (
     CONTACT_ASKED,
     check_load,
@@ -24,6 +25,7 @@ from facegear.build.checks import (
     with_backlash,
 )
 from facegear.build.elastic_bodies import check_bodies, elastic_gears
+from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
@@ -150,6 +152,7 @@ class Config(Section):
         if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
             springs = {
                 "transmission.torsion": bool(self.transmission.torsion),
+                "transmission.casing": self.transmission.casing is not None,
                 "a body of a face gear": bool(elastic_gears(self.transmission)),
             }
             for spring_owner in (name for name, is_present in springs.items() if is_present):
@@ -191,7 +194,8 @@ class Config(Section):
         elif self.mesh_stiffness.source != "harmonics":
             requirement = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, requirement)
-        if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
+        has_contact = self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication
+        if has_contact and not refused_keys(["contact"], pair.model_dump()):
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             contact = self.contact_used
@@ -298,6 +302,7 @@ class Config(Section):
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         check_bodies(pair, machine)
+        check_casing(machine)
         check_pitch_once(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
             requirement = "given, as tooth_pair has no bodies that it could be taken from"
@@ -355,4 +360,6 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if config.transmission is not None:
         complete = with_backlash(config.tooth_pair, config.transmission)
         values["transmission"] = complete.model_dump(mode="json")
+        if complete.casing is not None:
+            values["transmission"]["casing"]["content"] = content(complete.casing)
     return values

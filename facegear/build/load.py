@@ -20,6 +20,7 @@ FILE_KEYS = (
     ("strength", "pinion", "card"),
     ("strength", "face_gear", "card"),
     ("lubrication", "oil"),
+    *(("transmission", "casing", key) for key in ("stiffness", "mass", "damping", "nodes", "dofs")),
     ("transmission", "face_gear", "body", "corners_csv"),
     ("transmission", "face_gear", "body", "step"),
     ("transmission", "single_gears", "lower", "body", "corners_csv"),

@@ -8,31 +8,21 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from facegear.arrays import Array
-from facegear.build.machine_layout import (
-    ToothNumbers,
-    layout,
-    nominal_force,
-    single_parts,
-    stepped_shaft,
-    torsional_spring,
-)
+from facegear.arrays import Array, Arrays
+from facegear.build.casing import machine_casing
+from facegear.build.machine_layout import layout, nominal_force, single_parts, stepped_shaft, torsional_spring
 from facegear.build.rolling import nominal_state, rolling_shaft
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.machine.disturbances import Excitation
 from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
-from facegear.machine.layout import Layout, PhaseConvention, mesh_phases
-from facegear.machine.machine import (
-    Damping,
-    FlankTables,
-    Machine,
-    OpenFlanks,
-    balanced_torques,
-    pinion_torques,
-)
+from facegear.machine.layout import Layout
+from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
 from facegear.machine.mean_load import rolling_seat
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
 from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection
@@ -86,6 +76,7 @@ def imperfections(
         },
         position=1e-6
         * np.array([(single_part.position_um.x, single_part.position_um.y) for single_part in pinions]),
+        outwards=1e-6 * np.array([single_part.position_um.z for single_part in pinions]),
         bearing_clearance=1e-6 * np.array(clearances),
         clocking=np.array([single_part.clocking_deg for single_part in pinions]) / 360.0 * shape.pinion_teeth,
         pinion_runout=tuple(_runout(single_part.runout or section.pinion.runout) for single_part in pinions),
@@ -213,6 +204,7 @@ def machine(
     unloaded_error: Harmonics | None = None,
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
+    casing: Arrays | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -234,6 +226,8 @@ def machine(
     tables : tuple[FlankTables, ...] or None
         Force tables of the flanks at each gear, where mesh forces depend on the load; None for a force
         that is stiffness times compression.
+    casing : mapping of arrays or None
+        Arrays of stage casing; None to reduce the casing of the section here, where it has one.
 
     Returns
     -------
@@ -261,6 +255,7 @@ def machine(
         imperfections=flaws,
         forces=external_forces(section, shape),
         drive_line=drive_line(section, shape),
+        casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
     )
@@ -408,7 +403,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = _seat(shaft, nominal_force(section, shape.pinion_radius))
+            tilt_inertia = _tilt_inertia(shape, number, shaft)
+            seats[number] = _seat(shaft, nominal_force(section, shape.pinion_radius), tilt_inertia)
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
@@ -416,11 +412,24 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     return DriveLine(shape, seats, masses) if seats or masses else None
 
 
-def _seat(shaft: ShaftSection, force: float) -> Seat:
-    """Return the seat on a shaft; `force`, N, is that at which rolling bearings are taken."""
+def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
+    """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
+
+    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
+    half of that about its axis, as a thin disc.
+    """
+    if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
+        return 0.5 * shape.pinions[pinion].body.inertia
+    return shaft.tilt_inertia_kg_m2
+
+
+def _seat(shaft: ShaftSection, force: float, tilt_inertia: float | None) -> Seat:
+    """Return the seat of a pinion with a moment of inertia about a diameter, kg m2, None without tilts;
+    `force`, N, is that at which rolling bearings are taken.
+    """
     if shaft.is_rolling:
-        return rolling_seat(rolling_shaft(shaft), nominal_state(shaft, force), shaft.tilt_inertia_kg_m2)
-    return Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
+        return rolling_seat(rolling_shaft(shaft), nominal_state(shaft, force), tilt_inertia)
+    return Seat(condense_shaft(stepped_shaft(shaft)), tilt_inertia)
 
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:

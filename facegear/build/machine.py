@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from facegear.arrays import Array, Arrays
 from facegear.build.lumped_model import machine
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics, fit_harmonics, stack_series
 from facegear.lubrication.columns import EXCITATION_COLUMNS
@@ -122,7 +122,7 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     NotConverged
         If the machine has no static equilibrium.
     """
-    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
+    torques = np.abs(machine.layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
     table_torques, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm
@@ -249,6 +249,8 @@ class MachineInputs:
         Arrays `surface` of stage pose_surface, where meshes stand in the loaded position of their bodies.
     bodies : mapping of arrays or None
         Arrays `reduced` of stage gear_bodies, where face gears bend.
+    casing : mapping of arrays or None
+        Arrays `reduced` of stage casing, where the machine stands on one.
     tooth_errors : mapping of arrays or None
         Arrays `curves` of stage tooth_errors, where single teeth deviate.
     """
@@ -261,6 +263,7 @@ class MachineInputs:
     law: Arrays | None = None
     poses: Arrays | None = None
     bodies: Arrays | None = None
+    casing: Arrays | None = None
     tooth_errors: Arrays | None = None
 
     @classmethod
@@ -326,7 +329,7 @@ class MachineInputs:
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
             series = stiffness_source.series_of(series)
-        lumped_machine = machine(self.transmission, self.teeth, series, error)
+        lumped_machine = machine(self.transmission, self.teeth, series, error, casing=self.casing)
         if self.law is not None:
             lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
         if self.bodies is not None:

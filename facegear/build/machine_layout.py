@@ -4,13 +4,13 @@ The one place where that section and the tooth numbers of section `tooth_pair` m
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from facegear.build.rolling import nominal_state
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 from facegear.machine.mean_load import body_on_tangent
@@ -24,7 +24,6 @@ from facegear.schema.bodies import (
     SinglePinion,
     TiltSection,
 )
-from facegear.schema.changes import TEETH
 from facegear.schema.gear_body import MaterialSection
 from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
 from facegear.schema.transmission import PinionPlace, Transmission
@@ -32,59 +31,6 @@ from facegear.sharing.groups import load_groups, split_groups
 
 LEAST_FORCE = 100.0
 """Force at which the rolling bearings of a machine without torque are taken at first, N."""
-
-
-@dataclass(frozen=True)
-class ToothNumbers:
-    """Numbers of the tooth pair that the lumped model needs; radii in m, angle in rad."""
-
-    pinion_teeth: int
-    gear_teeth: int
-    pinion_base_radius: float
-    pressure_angle: float
-
-    @classmethod
-    def of_config(cls, values: Mapping[str, Any]) -> Self:
-        """Return the tooth numbers from plain config values.
-
-        Parameters
-        ----------
-        values : Mapping[str, Any]
-            Section `tooth_pair`, or its keys TEETH alone.
-
-        Returns
-        -------
-        Self
-            Tooth numbers in SI units.
-        """
-        return cls.of_teeth(*(values[key] for key in TEETH))
-
-    @classmethod
-    def of_teeth(
-        cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
-    ) -> Self:
-        """Return the tooth numbers from the values of the keys TEETH.
-
-        Parameters
-        ----------
-        pinion_teeth : int
-            Number of teeth of each pinion.
-        face_gear_teeth : int
-            Number of teeth of each face gear.
-        module_mm : float
-            Module, mm.
-        pressure_angle_deg : float
-            Pressure angle, deg.
-
-        Returns
-        -------
-        Self
-            Tooth numbers, base radius of the pinion m N1 cos(alpha) / 2 (m) and pressure angle alpha
-            (rad).
-        """
-        angle = float(np.radians(pressure_angle_deg))
-        base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
-        return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
 
 
 def lumped_sections(
@@ -98,7 +44,7 @@ def lumped_sections(
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------
@@ -116,7 +62,7 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
     transmission : Mapping[str, Any]
         Plain values of section `transmission`.
     teeth : Mapping[str, Any]
-        Plain values of section `tooth_pair`, or of its keys TEETH.
+        Plain values of section `tooth_pair`, or of its keys TEETH with `middle_mm`.
 
     Returns
     -------
@@ -161,7 +107,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     """
     radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
-    pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
+    pinion_radius = teeth.pinion_arm if radius_mm is None else 1e-3 * radius_mm
     conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
     return Layout(
         pinions=tuple(
@@ -182,6 +128,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
         pinion_radius=pinion_radius,
         gear_radius=conjugate if given_mm is None else 1e-3 * given_mm,
         kinematics=KINEMATICS[section.mesh_kinematics],
+        kind=teeth.kind,
     )
 
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from facegear.build.checks import geometric_backlash
 from facegear.build.lumped_model import LumpedParts, half_backlash, lumped_parts
-from facegear.build.machine_layout import ToothNumbers, lumped_sections
+from facegear.build.machine_layout import lumped_sections
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
 from facegear.machine.assembly import Assembly, assembly, interference_depths
@@ -16,6 +17,9 @@ from facegear.schema.bodies import SingleGear, SinglePinion
 from facegear.schema.plausibility import plausibility_notes
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import BACKLASH_DIFFERS_UM
+
+NO_PUSH = 1e-12
+"""Axial part of a flank's normal that is rounding."""
 
 
 def require_buildable(section: Transmission, teeth: ToothNumbers, model: LumpedParts | None = None) -> None:
@@ -51,6 +55,7 @@ def require_buildable(section: Transmission, teeth: ToothNumbers, model: LumpedP
     bodies: dict[str, SinglePinion | SingleGear] = {**section.single_pinions, **section.single_gears}
     for name, body in bodies.items():
         _require_hold(shape, name, body)
+    _require_axial_bearings(section, shape)
     _require_assembly(section, shape, assembly(shape, half_backlash(section, shape), flaws.clocking))
 
 
@@ -111,6 +116,18 @@ def _require_hold(shape: Layout, name: str, single_part: SinglePinion | SingleGe
         if force != 0.0 and bearing["xyz".index(axis)] == 0.0:
             requirement = f"0, as the bearing has no stiffness along {axis}"
             raise ConfigError(f"transmission.{key}.{name}.force_n.{axis}", force, requirement)
+
+
+def _require_axial_bearings(section: Transmission, shape: Layout) -> None:
+    """Raise ConfigError for a pinion that its teeth push along its axis and that no bearing holds there."""
+    axial = max(abs(frame.normal[2]) for frames in shape.flank_frames for frame in frames)
+    for pinion in shape.pinions:
+        if axial > NO_PUSH and pinion.body.bearing[2] == 0.0:
+            single = section.single_pinions.get(pinion.name)
+            has_bearing = single is not None and single.bearing_stiffness_n_per_m is not None
+            part = f"single_pinions.{pinion.name}" if has_bearing else "pinion"
+            requirement = "positive, as helical or tapered teeth push the pinion along its axis"
+            raise ConfigError(f"transmission.{part}.bearing_stiffness_n_per_m.z", 0.0, requirement)
 
 
 def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> None:

@@ -20,10 +20,13 @@ from facegear.schema.gear_body import MaterialSection
 from facegear.schema.tooth_pair import (
     AssemblySection,
     FaceGearSection,
+    FlankAngles,
     GearModificationsSection,
     PinionSection,
+    PressureAngle,
     ReliefSection,
     ShaperSection,
+    flank_angles_deg,
 )
 from facegear.teeth.design import (
     AssemblyErrors,
@@ -40,12 +43,40 @@ from facegear.teeth.validate import check
 
 
 class ToothPair(Section):
-    """A spur pinion and the face gear generated for it."""
+    """A pinion and the face gear generated for it."""
 
     pinion_teeth: int = Field(ge=5, le=500, description="number of teeth of each pinion")
     face_gear_teeth: int = Field(ge=10, le=2000, description="number of teeth of each face gear")
-    module_mm: float = Field(ge=0.1, le=100, description="pitch diameter of the pinion over its teeth")
-    pressure_angle_deg: float = Field(ge=10, le=40, description="at the pitch circle of the pinion")
+    module_mm: float = Field(
+        ge=0.1, le=100, description="normal module: of spur teeth the pinion's pitch diameter over its teeth"
+    )
+    pressure_angle_deg: PressureAngle | FlankAngles = Field(
+        description="normal, at the pinion's pitch circle; of both flanks, or of each"
+    )
+    helix_angle_deg: float = Field(
+        default=0.0,
+        ge=-45,
+        le=45,
+        description="of the rack's datum plane, positive for a right-hand pinion",
+    )
+    taper_angle_deg: float = Field(
+        default=0.0,
+        ge=-20,
+        le=20,
+        description="tilt of the rack's datum plane, positive where the pinion grows outwards",
+    )
+    shaft_angle_deg: float = Field(
+        default=90.0,
+        ge=20,
+        le=160,
+        description="between the axes as of bevel gears; below 90 the pinion's outer end leans to the gear",
+    )
+    offset_mm: float = Field(
+        default=0.0,
+        ge=-1e4,
+        le=1e4,
+        description="distance of the axes, positive with the pinion's axis at +x of the gear's",
+    )
     material: MaterialSection = Field(
         MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3), description="of both gears"
     )
@@ -180,9 +211,15 @@ def _nominal(section: ToothPair) -> PairDesign:
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:
         raise ConfigError("tooth_pair.pinion", None, "given, as geometry and contact need the bodies")
+    drive, coast = flank_angles_deg(section.pressure_angle_deg)
     return PairDesign(
         module=m,
-        pressure_angle=radians(section.pressure_angle_deg),
+        pressure_angle=radians(drive),
+        coast_pressure_angle=None if drive == coast else radians(coast),
+        helix_angle=radians(section.helix_angle_deg),
+        taper_angle=radians(section.taper_angle_deg),
+        shaft_angle=radians(section.shaft_angle_deg),
+        offset=1e-3 * section.offset_mm,
         pinion=PinionGeometry(
             teeth=section.pinion_teeth,
             width=1e-3 * pinion.width_mm,
@@ -196,6 +233,7 @@ def _nominal(section: ToothPair) -> PairDesign:
             tip_relief=_relief(pinion.tip_relief),
             root_relief=_relief(pinion.root_relief),
             lead_crowning=_relief(pinion.lead_crowning),
+            middle=None if pinion.middle_mm is None else 1e-3 * pinion.middle_mm,
         ),
         face_gear=FaceGearGeometry(
             teeth=section.face_gear_teeth,
@@ -210,6 +248,7 @@ def _nominal(section: ToothPair) -> PairDesign:
             offset=1e-6 * section.assembly.offset_um,
             shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
             gear_axial=1e-6 * section.assembly.gear_axial_um,
+            pinion_axial=1e-6 * section.assembly.pinion_axial_um,
         ),
     )
 

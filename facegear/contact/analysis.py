@@ -9,16 +9,16 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Integers
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.gear_flank import GearFlank, contact_model
+from facegear.contact.gear_flank import GearFlank, PairFlanks, contact_model, flank_models, flanks_of
 from facegear.contact.ltca import ContactModel, KnownContact, even_positions, loaded_contact
-from facegear.contact.nodal_loads import load_arrays, touching_reactions
+from facegear.contact.nodal_loads import load_arrays, touching_reactions, wrench_table
 from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
-from facegear.teeth.placement import distinct_pairs
+from facegear.teeth.placement import GEARS
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -179,6 +179,14 @@ class ContactAnalysis:
         ]
 
     @cached_property
+    def wrenches(self) -> list[pd.DataFrame]:
+        """Force and moment of the pinion on the gear, by pair, columns WRENCH_COLUMNS of `nodal_loads`."""
+        return [
+            wrench_table(model.flanks.pinion, results)
+            for model, (results, _) in zip(self.models, self.results, strict=True)
+        ]
+
+    @cached_property
     def by_torque(self) -> list[pd.DataFrame]:
         """Summary of each pair's contact, one row a torque, columns COLUMNS of `summary` and
         `path_radius_mm`.
@@ -199,14 +207,15 @@ class ContactAnalysis:
 def contact_analysis(
     design: PairDesign,
     materials: tuple[Material, Material],
-    flanks: tuple[GearFlank, GearFlank],
+    flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     every_flank: bool = True,
     known_contact: KnownContact | None = None,
+    gears: Sequence[str] = GEARS,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
-    All pairs that differ in assembly errors and deviations are solved on the same compliances.
+    All pairs that differ in assembly errors and deviations alone are solved on the same compliances.
 
     Parameters
     ----------
@@ -214,14 +223,17 @@ def contact_analysis(
         Pair of gears.
     materials : tuple[Material, Material]
         Pinion and face gear.
-    flanks : tuple[GearFlank, GearFlank]
-        Surfaces and compliances of pinion and face gear.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`; the first
+        alone without `every_flank`.
     plan : ContactPlan
         Torques, positions and options.
     every_flank : bool
         Whether all flanks are solved, not only the upper gear's drive flank.
     known_contact : KnownContact, optional
         Contact of a pair that differs little, with the same nodes and plan.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -233,11 +245,9 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    model = contact_model(design, *flanks)
-    different, numbers = distinct_pairs(design)
+    models, numbers = flank_models(design, flanks, gears)
     if not every_flank:
-        different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.of(pair_design) for pair_design in different]
+        models, numbers = models[:1], np.zeros_like(numbers)
     return ContactAnalysis(
         models, [_solve_model(pair_model, materials, plan, known_contact) for pair_model in models], numbers
     )
@@ -318,7 +328,7 @@ def posed_contacts(
 def met_contacts(
     design: PairDesign,
     materials: tuple[Material, Material],
-    flanks: tuple[GearFlank, GearFlank],
+    flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     pair_torques: Sequence[tuple[PairDesign, tuple[float, ...]]],
 ) -> Iterator[PosedContact]:
@@ -330,8 +340,8 @@ def met_contacts(
         Pair of gears that the flanks were made for.
     materials : tuple[Material, Material]
         Pinion and face gear.
-    flanks : tuple[GearFlank, GearFlank]
-        Surfaces and compliances of pinion and face gear.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`.
     plan : ContactPlan
         Positions and options; its torques are not used.
     pair_torques : Sequence[tuple[PairDesign, tuple[float, ...]]]
@@ -347,11 +357,9 @@ def met_contacts(
     NotConverged
         Names position and torque.
     """
-    model = contact_model(design, *flanks)
     for pair_design, torques in pair_torques:
-        yield _solve_assembly(
-            model.of(pair_design), pair_design.assembly, materials, replace(plan, torques=torques)
-        )
+        model = contact_model(pair_design, *flanks_of(pair_design, design, flanks))
+        yield _solve_assembly(model, pair_design.assembly, materials, replace(plan, torques=torques))
 
 
 def _solve_assembly(

@@ -1,11 +1,12 @@
 """The loaded flank of one gear with its compliance, and both gears of a pair together."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 
-from facegear.arrays import AnyArray, Arrays
+from facegear.arrays import AnyArray, Arrays, Integers
 from facegear.contact.bodies import compliance
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.flanks import flank_pair
@@ -17,6 +18,7 @@ from facegear.errors import InvalidInput
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_quality import require_right_side_out
 from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import GEARS, distinct_pairs, nominal_pairs, nominal_teeth
 from facegear.teeth.tooth_mesh import FeTooth, gear_tooth, pinion_tooth
 
 
@@ -85,6 +87,46 @@ def to_arrays(flank: GearFlank) -> dict[str, AnyArray]:
         "gauge_across": empty_gauges if gauges is None else gauges.across,
         "gauge_error": np.zeros(0) if gauges is None else gauges.error,
     }
+
+
+def every_flank_to_arrays(flanks: Sequence[GearFlank]) -> dict[str, AnyArray]:
+    """Return named arrays from which `every_flank_from_arrays` rebuilds the flanks of a body.
+
+    Parameters
+    ----------
+    flanks : Sequence[GearFlank]
+        Flank in each pair of bodies.
+
+    Returns
+    -------
+    dict of arrays
+        Those of `to_arrays` for the first pair, and for each further one those with its number in front.
+    """
+    further = {
+        f"{number}_{name}": values
+        for number, flank in enumerate(flanks[1:], 1)
+        for name, values in to_arrays(flank).items()
+    }
+    return {**to_arrays(flanks[0]), **further}
+
+
+def every_flank_from_arrays(arrays: Arrays) -> list[GearFlank]:
+    """Rebuild the flanks of a body in all pairs of bodies.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays of `every_flank_to_arrays`.
+
+    Returns
+    -------
+    list[GearFlank]
+        Flank in each pair of bodies.
+    """
+    flanks = [from_arrays(arrays)]
+    while f"{len(flanks)}_shape" in arrays:
+        flanks.append(from_arrays({name: arrays[f"{len(flanks)}_{name}"] for name in ARRAY_SHAPES}))
+    return flanks
 
 
 def from_arrays(arrays: Arrays) -> GearFlank:
@@ -228,3 +270,107 @@ def contact_model(design: PairDesign, pinion: GearFlank, gear: GearFlank) -> Con
     first, second = pinion.compliance, gear.compliance
     cuts = first.refinement, second.refinement
     return ContactModel(flank_pair(design, (pinion.side, gear.side), cuts, first.linear), first, second)
+
+
+PairFlanks = tuple[GearFlank, GearFlank]
+"""Flank of the pinion, and the flank of the face gear that it drives."""
+
+
+RIGHT_ANGLE = pi / 2
+"""Shaft angle (rad) of axes that cross at a right angle."""
+
+
+def gear_flanks(
+    design: PairDesign,
+    body: str,
+    sizes: MeshSizes,
+    material: Material,
+    plan: ContactPlan,
+    gears: Sequence[str] = GEARS,
+) -> list[GearFlank]:
+    """Compute the flanks of a body in all pairs of bodies that both gears' both flanks need.
+
+    Coast flanks are the drive flanks of the mirrored pair, with a mesh of their own.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : str
+        `pinion` or `face_gear`.
+    sizes : MeshSizes
+        Element sizes.
+    material : Material
+        Of the body.
+    plan : ContactPlan
+        Refinement, sector and element.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
+
+    Returns
+    -------
+    list[GearFlank]
+        Flank in each of `placement.nominal_pairs`.
+
+    Raises
+    ------
+    InvalidInput, FacegearError
+        As `gear_flank` does.
+    """
+    flanks: dict[PairDesign, GearFlank] = {}
+    keys = [_meshed(pair, body) for pair in nominal_pairs(design, gears)]
+    for key, pair in zip(keys, nominal_pairs(design, gears), strict=True):
+        if key not in flanks:
+            flanks[key] = gear_flank(pair, body, sizes, material, plan)
+    return [flanks[key] for key in keys]
+
+
+def _meshed(pair: PairDesign, body: str) -> PairDesign:
+    """Return the pair as far as a body's mesh depends on it: a pinion's does not on how its axis stands."""
+    return replace(pair, shaft_angle=RIGHT_ANGLE, offset=0.0) if body == "pinion" else pair
+
+
+def flank_models(
+    design: PairDesign, flanks: Sequence[PairFlanks], gears: Sequence[str] = GEARS
+) -> tuple[list[ContactModel], Integers]:
+    """Build the contact models of all flanks that differ, each on the bodies that it belongs to.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Flanks of `placement.nominal_pairs`, in their order; models of missing ones are left out.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
+
+    Returns
+    -------
+    tuple[list[ContactModel], Integers]
+        Models, that of the upper gear's drive flank first, and the number of the model of each gear's
+        each flank, (2, 2), as `placement.distinct_pairs` returns it.
+    """
+    different, numbers = distinct_pairs(design, gears)
+    bodies = dict(zip(nominal_pairs(design, gears), flanks, strict=False))
+    needed = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
+    return [contact_model(pair, *of_pair) for pair, of_pair in needed if of_pair is not None], numbers
+
+
+def flanks_of(pair: PairDesign, design: PairDesign, flanks: Sequence[PairFlanks]) -> PairFlanks:
+    """Return the flanks of a pair, one of those of a design in any assembly and with any deviations.
+
+    Parameters
+    ----------
+    pair : PairDesign
+        Pair by `placement.pair_at` of the design, maybe in another assembly.
+    design : PairDesign
+        Pair of gears.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Flanks of `placement.nominal_pairs` of the design.
+
+    Returns
+    -------
+    tuple[GearFlank, GearFlank]
+        Flank of the pinion, and the flank of the face gear that it drives.
+    """
+    return flanks[nominal_pairs(design).index(nominal_teeth(pair))]

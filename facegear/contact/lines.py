@@ -1,6 +1,10 @@
-"""Contact lines: where the gap between exact flanks is least in every plane across the pinion's axis.
+"""Contact lines: stations where the gap between exact flanks is least in planes across the pinion's axis.
 
-They do not depend on load: a tooth bends by less than 1 mrad, which moves its contact line by some 0.01 mm.
+Planes across the axis cut a flank's tangent plane square to the pinion's generators, whatever the base helix:
+so a contact line, which lies within some 15 degrees of the generators, has one station in each of them. A
+station stands for a piece of the line, longer than the planes' distance by the line's slope and by the lean
+of the generators.
+Lines do not depend on load: a tooth bends by less than 1 mrad, which moves its line by some 0.01 mm.
 """
 
 from collections.abc import Mapping
@@ -9,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.arrays import Array
-from facegear.teeth import face_gear, pinion
+from facegear.arrays import Array, Integers
+from facegear.teeth import face_gear
 from facegear.teeth.curvature import opposite_curvatures
 from facegear.teeth.design import PairDesign
+from facegear.teeth.pinion import junction_roll, tip_roll
 from facegear.teeth.placement import conjugate_angle, pinion_angle, to_left_flank
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation, separation_each
@@ -34,15 +39,15 @@ FINER = (0.1, 0.02)
 
 @dataclass(frozen=True, eq=False)
 class ContactLines:
-    """Contact lines of p placements of pairs of teeth, on n planes across the pinion's axis at `y` (n,)
-    m.
+    """Contact lines of p placements of pairs of teeth, with stations in n planes across the pinion's axis at
+    `y` (n,) m.
 
     All others (p, n): `roll` (rad) on the pinion; `curvature` (1/m) across the line, relative of both
-    flanks, positive; `slope` (rad) of the line against the pinion's axis, seen along the common normal;
+    flanks, positive; `slope` (rad) of the line against the pinion's generator, seen along the common normal;
     how far (m) the line is from the pinion's and the gear's tip edge and from the nearest end of both
     faces, negative beyond the pinion's tip and the ends. What needs the gear's flank is nan where there
     is none. `face` is the width (m) of each plane that both faces cover, planes being as wide as they are
-    apart.
+    apart. `cosine`: of the base helix, by which generators lean against the axis.
     """
 
     y: Array
@@ -53,6 +58,22 @@ class ContactLines:
     to_gear_tip: Array
     to_end: Array
     face: Array
+    cosine: float = 1.0
+
+    def stretch(self, row: Integers, plane: Integers) -> Array:
+        """Compute the length of line per distance along the pinion's axis.
+
+        Parameters
+        ----------
+        row, plane : (...) array of int
+            Numbers of lines and of their planes.
+
+        Returns
+        -------
+        (...) array
+            Dimensionless; where the slope is not known, that of a generator.
+        """
+        return 1.0 / (self.cosine * np.cos(np.nan_to_num(self.slope[row, plane])))
 
 
 def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike, y: Array) -> ContactLines:
@@ -83,7 +104,7 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
     roll = _min_gap_roll(design, (phi1, phi2, tooth), y)
     points = flank_points(design, roll, y)
     flank_separation = separation(design, points, phi1, phi2, tooth)
-    flank = (flank_separation.part == FLANK) & (roll > _min_roll(design))
+    flank = (flank_separation.part == FLANK) & (roll > first_roll(design, y))
     gear_roll, psi = np.where(flank, flank_separation.u, np.nan), np.where(flank, flank_separation.v, np.nan)
     curvature, slope = (np.full(roll.shape, np.nan) for _ in range(2))
     turns = np.broadcast_to(to_left_flank(design, phi1, phi2, tooth).matrix[:, None], (*roll.shape, 3, 3))
@@ -103,10 +124,11 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
         roll=roll,
         curvature=curvature,
         slope=slope,
-        to_pinion_tip=_arc(design, design.pinion_tip_roll) - _arc(design, roll),
+        to_pinion_tip=_arc(design, tip_roll(design, y)) - _arc(design, roll),
         to_gear_tip=to_gear_tip,
-        to_end=np.minimum(ends, half - np.abs(y - design.mean_radius)),
+        to_end=np.minimum(ends, half - np.abs(y - design.middle)),
         face=_covered_width(design, y, radius),
+        cosine=design.family.pinion_flanks[0].cosine,
     )
 
 
@@ -135,7 +157,7 @@ def contact_gaps(
     NotConverged
         As `separation` does.
     """
-    roll = np.clip(_min_gap_roll(design, placement, y), _min_roll(design), design.pinion_tip_roll)
+    roll = np.clip(_min_gap_roll(design, placement, y), first_roll(design, y), tip_roll(design, y))
     flank_separation = separation(design, flank_points(design, roll, y), *placement)
     on = flank_separation.part == FLANK
     points = face_gear.flank_point(
@@ -175,13 +197,26 @@ def unloaded_lines(
     """
     phi1 = pinion_angle(design, position)
     error = -np.array([unloaded_errors[at] for at in position.tolist()])
-    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
+    phi2 = conjugate_angle(design, phi1) + error / design.gear_normal_arm
     return contact_lines(design, phi1, phi2, tooth, y)
 
 
-def _min_roll(design: PairDesign) -> float:
-    """Return the smallest roll angle, rad, of the involute: at the fillet, not below the base circle."""
-    return max(pinion.junction_roll(design), 0.0)
+def first_roll(design: PairDesign, y: Array) -> Array:
+    """Compute the smallest roll angle of the involute: at the fillet, not below the base circle.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array
+        Places along the pinion's axis, m.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
+    return np.maximum(junction_roll(design, y), 0.0)
 
 
 def _arc(design: PairDesign, roll: Array | float) -> Array:
@@ -197,12 +232,12 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
     even in the square of the roll, is refined by parabolas through three gaps. Beyond the tip it ends at
     BEYOND of the profile.
     """
-    top, bottom = design.pinion_tip_roll**2, _min_roll(design) ** 2
+    top, bottom = (np.broadcast_to(end(design, y) ** 2, y.shape) for end in (tip_roll, first_roll))
     roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
     step = roll_squared[1] - roll_squared[0]
     gap = _sampled_gaps(design, placement, roll_squared, y)
     nearest = np.clip(np.argmin(gap, axis=1), 1, SAMPLES - 2)
-    square = roll_squared[nearest] + step * _vertex(
+    square = roll_squared[nearest, np.arange(y.size)] + step * _vertex(
         *(np.take_along_axis(gap, (nearest + side)[:, None], 1)[:, 0] for side in (-1, 0, 1))
     )
     for part in FINER:
@@ -214,7 +249,7 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
 def _sampled_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array
 ) -> Array:
-    """Return the gaps (p, k, n) of `_gaps` at squares (k,) of the roll, as many as show the least in each
+    """Return the gaps (p, k, n) of `_gaps` at squares (k, n) of the roll, as many as show the least in each
     plane.
 
     Every EVERY-th sample is computed first. Gaps fall towards the least and rise beyond it, so that the
@@ -222,15 +257,14 @@ def _sampled_gaps(
     all samples are computed, except for pairs that have none in any plane. Samples that are not computed
     are inf.
     """
-    number = np.arange(roll_squared.size)[:, None]
+    number = np.arange(len(roll_squared))[:, None]
     gap = np.full((placement[0].size, number.size, y.size), np.inf)
-    first = np.broadcast_to(roll_squared[::EVERY, None], (number[::EVERY].size, y.size))
-    gap[:, ::EVERY] = _gaps(design, placement, first, y)
+    gap[:, ::EVERY] = _gaps(design, placement, roll_squared[::EVERY], y)
     has_gap = np.isfinite(gap).any(axis=1, keepdims=True)
     near = np.abs(number - np.argmin(gap, axis=1)[:, None]) < EVERY
     is_needed = (number % EVERY > 0) & np.where(has_gap, near, has_gap.any(axis=2, keepdims=True))
     pair, sample, plane = (np.ascontiguousarray(part) for part in np.nonzero(is_needed))
-    points = flank_points(design, np.sqrt(np.maximum(roll_squared[sample], 0.0)), y[plane])
+    points = flank_points(design, np.sqrt(np.maximum(roll_squared[sample, plane], 0.0)), y[plane])
     gap[is_needed] = separation_each(design, points, placement, pair, design.module).continued
     return gap
 

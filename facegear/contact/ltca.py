@@ -24,9 +24,11 @@ from facegear.contact.position_solver import (
     SearchStrip,
 )
 from facegear.contact.search import cover_of, facing_points
+from facegear.errors import InvalidInput
 from facegear.progress import Progress
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.pinion import junction_roll, tip_roll
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
@@ -45,7 +47,7 @@ class KnownContact:
 
 
 def known_contact(
-    results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], base_radius: float
+    results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], normal_arm: float
 ) -> KnownContact | None:
     """Extract the rotation and the loaded nodes from results of a pair, to speed up a pair that differs
     little.
@@ -58,8 +60,8 @@ def known_contact(
         All positions, in pitches.
     shape : tuple[int, int]
         Refined lattice of the pinion.
-    base_radius : float
-        Of the pinion, m.
+    normal_arm : float
+        Torque on the pinion over the force along its flank's normal, m.
 
     Returns
     -------
@@ -70,7 +72,7 @@ def known_contact(
     turn, is_loaded = np.zeros(len(positions)), np.zeros((len(positions), PAIRS.size, *shape), bool)
     for result in results:
         row = row_of[result.position]
-        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / base_radius)
+        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / normal_arm)
         for spot in result.spots:
             is_loaded[row, np.searchsorted(PAIRS, spot.tooth)].flat[spot.hats] = True
     if turn.min() <= 0.0:
@@ -83,6 +85,33 @@ def known_contact(
 
 TOUCHING_GAP = 1e-9
 """Gap (m) of conjugate flanks below which they count as touching; off the path it grows by micrometres."""
+
+
+def check_overlap(design: PairDesign) -> None:
+    """Refuse a pair of which other pairs of teeth than PAIRS may touch while they pass through the mesh.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Raises
+    ------
+    InvalidInput
+        Where a tooth stays in mesh for too long a turn before or after the middle of its passage.
+    """
+    flank, half = design.family.pinion_flanks[0], design.pinion.width / 2
+    y = design.middle + np.array([-half, half])
+    rolls = np.stack([np.broadcast_to(ends(design, y), y.shape) for ends in (junction_roll, tip_roll)])
+    # turn at which a place of the flank has the normal of the pitch line
+    turns = rolls + flank.lead / flank.base_radius * (y - flank.middle) - flank.pressure_angle - flank.phase
+    pitches = float(np.abs(turns).max()) * design.pinion.teeth / (2 * np.pi)
+    if pitches > PAIRS[-1] + 0.5:
+        raise InvalidInput(
+            "overlap of the teeth",
+            f"a tooth in mesh up to {pitches:.3g} pitches from its middle",
+            f"at most {PAIRS[-1] + 0.5:g}: a smaller helix angle or a narrower pinion is needed",
+        )
 
 
 def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> Integers:
@@ -220,12 +249,15 @@ def loaded_contact(
     ------
     NotConverged
         Names the position and the torque.
+    InvalidInput
+        As `check_overlap` does.
     """
     options = options or ContactOptions()
     design, face = model.design, model.design.face_gear
+    check_overlap(design)
     phi1 = pinion_angle(design, positions)
     phi2, unloaded_error = unloaded_motion(design, phi1)
-    first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
+    first = first_turn(torques, design.normal_arm, face.outer_radius - face.inner_radius)
     progress = Progress("loaded contact", len(phi1))
     placements = list(zip(phi1.tolist(), phi2.tolist(), strict=True))
     position_search = _PositionSearch(model, options, placements, known_contact)
@@ -336,9 +368,9 @@ class _PairAtPosition:
     unloaded_error: float
 
     @property
-    def base_radius(self) -> float:
-        """Base radius of the pinion, m."""
-        return self.position_search.model.design.pinion_base_radius
+    def normal_arm(self) -> float:
+        """Torque on the pinion over the force along its flank's normal, m."""
+        return self.position_search.model.design.normal_arm
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact under `torques` (t,) N m, the largest first, of all that a rotation by

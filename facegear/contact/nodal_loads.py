@@ -14,9 +14,10 @@ import scipy.sparse as sp
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.position import LoadedPosition, Spot
+from facegear.contact.position import LoadedPosition
 from facegear.quantities import BODIES
-from facegear.teeth.placement import body_rotation, pinion_angle, rotation
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import RigidMotion, pinion_angle, pinion_to_gear
 
 
 def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Integers) -> dict[str, AnyArray]:
@@ -24,7 +25,7 @@ def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Int
     tooth.
 
     Nodes count along each row of the contact surface's lattice before refinement; the force (N) acts
-    against the surface's outward normal.
+    against the surface's outward normal. `nodes` are the numbers of the variant that has the most.
 
     Parameters
     ----------
@@ -49,14 +50,20 @@ def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Int
         "position": np.array([case.position for case in cases]),
     }
     spots = [(number, spot) for number, case in enumerate(cases) for spot in case.spots]
+    nodes: list[int] = []
     for body, part in zip(BODIES, ("on_pinion", "on_gear"), strict=True):
-        forces = np.array([getattr(spot, part) for _, spot in spots])
+        of_spots = [getattr(spot, part) for _, spot in spots]
+        # flanks of different bodies may differ in their numbers of nodes; matrices of forces have the most
+        forces = np.zeros((len(of_spots), max(values.size for values in of_spots)))
+        for number, values in enumerate(of_spots):
+            forces[number, : values.size] = values
+        nodes.append(forces.shape[1])
         row, node = np.nonzero(forces)
         arrays[f"{body}_case"] = np.array([number for number, _ in spots])[row]
         arrays[f"{body}_tooth"] = np.array([spot.tooth for _, spot in spots])[row]
         arrays[f"{body}_node"] = node
         arrays[f"{body}_force_n"] = forces[row, node]
-    arrays["nodes"] = np.array([spots[0][1].on_pinion.size, spots[0][1].on_gear.size])
+    arrays["nodes"] = np.array(nodes)
     return arrays
 
 
@@ -131,29 +138,72 @@ def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]
 
 def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
     """Return tangential force, axial force and overturning moment (3,), N, N and N m, at one position and
-    torque.
-
-    Their signs are those of `touching_reactions`; they are sums over all pairs of teeth, 0 without load.
+    torque, in the signs of `touching_reactions`; 0 without load.
     """
-    parts = [_of_spot(surface, result.position, spot) for spot in result.spots]
-    return np.sum(parts, axis=0) if parts else np.zeros(3)
+    errors = surface.design.assembly
+    force, moment = np.split(contact_wrench(surface, result), 2)
+    return np.array([force[0], -force[2], -(moment[0] + errors.gear_axial * force[1])])
 
 
-def _of_spot(surface: PinionSurface, position: float, spot: Spot) -> Array:
-    """Return tangential force, axial force and overturning moment (3,), N, N and N m, of one pair of
-    teeth.
+WRENCH_COLUMNS = (
+    *("torque_n_m", "position", "force_x_n", "force_y_n", "force_z_n"),
+    *("moment_x_n_m", "moment_y_n_m", "moment_z_n_m", "pinion_axial_n"),
+)
+"""Columns of the table of contact wrenches; units stand in the names."""
 
-    `position` is the mesh position in pitches. Forces are turned from the pinion's body frame to the mesh
-    frame and tilted by the shaft angle error.
+
+def wrench_table(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:
+    """Tabulate the wrench of the pinion on the gear at each torque and position.
+
+    Parameters
+    ----------
+    surface : PinionSurface
+        Contact surface of the pinion.
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns WRENCH_COLUMNS: `contact_wrench`, and the force on the pinion outwards along its own axis.
     """
-    design = surface.design
-    points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
-    angle = pinion_angle(design, position) + (spot.tooth - 0.5) * 2.0 * np.pi / design.pinion.teeth
-    matrix = body_rotation("pinion", angle)
-    tilt = rotation(np.array([1.0, 0.0, 0.0]), design.assembly.shaft_angle_error)
-    middle = np.array([0.0, design.mean_radius, 0.0])
-    force = (spot.force[:, None] * points.normal) @ (tilt @ matrix).T
-    from_middle = (points.position @ matrix.T - middle) @ tilt.T
-    about = from_middle[:, 1] * force[:, 2] - from_middle[:, 2] * force[:, 1]
-    axial = -force[:, 2].sum()
-    return np.array([force[:, 0].sum(), axial, design.mean_radius * axial - about.sum()])
+    outwards = _placed(surface.design, np.zeros(1), np.zeros(1)).directions(np.array([[0.0, 1.0, 0.0]]))[0, 0]
+    wrenches = [contact_wrench(surface, result) for result in results]
+    rows = [
+        (result.torque, result.position, *wrench, -wrench[:3] @ outwards)
+        for result, wrench in zip(results, wrenches, strict=True)
+    ]
+    return pd.DataFrame(rows, columns=list(WRENCH_COLUMNS))
+
+
+def contact_wrench(surface: PinionSurface, result: LoadedPosition) -> Array:
+    """Compute force and moment of the pinion on the gear at one position and torque, without friction.
+
+    Parameters
+    ----------
+    surface : PinionSurface
+        Contact surface of the pinion.
+    result : LoadedPosition
+        Contact at one position and torque.
+
+    Returns
+    -------
+    (6,) array
+        Force, N, and moment about the origin, N m, in the mesh frame; 0 without load.
+    """
+    design, wrench = surface.design, np.zeros(6)
+    for spot in result.spots:
+        points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
+        angle = pinion_angle(design, result.position)
+        motion = _placed(design, angle[None], np.array([float(spot.tooth)]))
+        force = spot.force[:, None] * motion.directions(points.normal)[0]
+        wrench[:3] += force.sum(axis=0)
+        wrench[3:] += np.cross(motion.points(points.position)[0], force).sum(axis=0)
+    return wrench
+
+
+def _placed(design: PairDesign, phi1: Array, tooth: Array) -> RigidMotion:
+    """Return the motions (p,) from the body frame of the pinion's tooth 0 to the mesh frame, where the pinion
+    stands at angles phi1 (p,) rad and the tooth is number `tooth` (p,).
+    """
+    return pinion_to_gear(design, phi1, -tooth * 2 * np.pi / design.face_gear.teeth, tooth)

@@ -7,7 +7,7 @@ import numpy as np
 from facegear.arrays import Array, Arrays, Integers
 from facegear.quantities import BODIES
 from facegear.teeth.design import PairDesign
-from facegear.teeth.limits import radius_limits
+from facegear.teeth.limits import pitch_line_radius, radius_limits
 from facegear.teeth.placement import pinion_angle, to_left_flank
 
 SHARES = tuple(f"load_share_pair_{name}" for name in ("m2", "m1", "0", "p1", "p2"))
@@ -271,12 +271,13 @@ def pattern_margins(arrays: Arrays, design: PairDesign, torque: float) -> Patter
     motion = to_left_flank(design, phi1, np.zeros_like(phi1), arrays["line_tooth"][on])
     x, y, z = motion.points(points[:, None, :])[:, 0].T
     radius = np.hypot(x, y)
-    gear, width, limits = design.face_gear, design.pinion.width, radius_limits(design)
-    first = max(gear.inner_radius, design.mean_radius - width / 2)
-    last = min(gear.outer_radius, design.mean_radius + width / 2)
+    half_face, limits = design.pinion.width / 2, radius_limits(design)
+    first, last = (pitch_line_radius(design, design.middle + end) for end in (-half_face, half_face))
+    first, last = max(design.face_gear.inner_radius, first), min(design.face_gear.outer_radius, last)
     inner, outer = max(radius.min() - half, first), min(radius.max() + half, last)
-    to_tip = design.pinion_tip_radius - np.hypot(points[:, 0], points[:, 2]).max()
-    below = design.gear_tip_plane - z.max()
+    growth = (points[:, 1] - design.middle) * design.family.taper
+    to_tip = (design.pinion_tip_radius + growth - np.hypot(points[:, 0], points[:, 2])).min()
+    below = (design.family.gear_tip.height(radius) - z).min()
     return PatternMargins(
         inner_end=inner - first,
         outer_end=last - outer,

@@ -35,8 +35,8 @@ The approach counts from where the flanks alone would touch, and teeth that over
 class PairAtPosition(Protocol):
     """Two gears at one position: the data that the solution of their contact needs.
 
-    `position` 0..1 of a pitch; `unloaded_error`: transmission error (m) there; the pinion's `base_radius`
-    (m).
+    `position` 0..1 of a pitch; `unloaded_error`: transmission error (m) there; `normal_arm` (m): torque on
+    the pinion over the force along its flank's normal.
     """
 
     @property
@@ -50,8 +50,8 @@ class PairAtPosition(Protocol):
         ...
 
     @property
-    def base_radius(self) -> float:
-        """Base radius of the pinion, m."""
+    def normal_arm(self) -> float:
+        """Torque on the pinion over the force along its flank's normal, m."""
         ...
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
@@ -102,7 +102,7 @@ class LoadedPosition:
     torque
         On the pinion, N m.
     ste, unloaded_error
-        Transmission error under load and without, m; their difference is base radius times rotation.
+        Transmission error under load and without, m; their difference is the normal arm times rotation.
     k_average, k_local
         Stiffness on the line of action, N/m: force over approach, and its derivative with the contact
         area following the load; k_average is nan where an overlap matters.
@@ -141,15 +141,15 @@ class LoadedPosition:
         return int(np.count_nonzero(self.load_share))
 
 
-def first_turn(torques: Sequence[float], base_radius: float, width: float) -> float:
-    """Return a guess of the largest rotation: largest torque / (base radius^2 width STIFFNESS).
+def first_turn(torques: Sequence[float], normal_arm: float, width: float) -> float:
+    """Return a guess of the largest rotation: largest torque / (normal arm^2 width STIFFNESS).
 
     Parameters
     ----------
     torques : Sequence[float]
         On the pinion, N m.
-    base_radius : float
-        Of the pinion, m.
+    normal_arm : float
+        Torque on the pinion over the force along its flank's normal, m.
     width : float
         Width over which its teeth mesh, m.
 
@@ -158,7 +158,7 @@ def first_turn(torques: Sequence[float], base_radius: float, width: float) -> fl
     float
         Rotation, rad.
     """
-    return max(torques) / (base_radius**2 * width * STIFFNESS)
+    return max(torques) / (normal_arm**2 * width * STIFFNESS)
 
 
 def solve_position(
@@ -267,14 +267,14 @@ def results_of(
 def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> list[LoadedPosition]:
     """Return the result at each torque (t,), N m, in the order of `contact`, the largest first.
 
-    Approach is base radius times rotation, k_average = torque / (base radius approach), k_local = 1 /
-    (base radius^2 d rotation / d torque). k_average is nan where the overlap is above UNKNOWN_REFERENCE
+    Approach is the normal arm times rotation, k_average = torque / (normal arm approach), k_local = 1 /
+    (normal arm^2 d rotation / d torque). k_average is nan where the overlap is above UNKNOWN_REFERENCE
     of the approach.
     """
-    base, teeth = pair.base_radius, contact.teeth
-    approach, overlap = base * contact.rotation, base * contact.overlap
-    average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)
-    local, part = 1.0 / (base**2 * contact.slope), contact.force * contact.lever_arm / torques[:, None]
+    arm, teeth = pair.normal_arm, contact.teeth
+    approach, overlap = arm * contact.rotation, arm * contact.overlap
+    average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / arm / approach, np.nan)
+    local, part = 1.0 / (arm**2 * contact.slope), contact.force * contact.lever_arm / torques[:, None]
     of_pair = contact.pair[:, None] == np.arange(teeth.size)
     load_share = np.zeros((torques.size, len(PAIRS)))
     load_share[:, np.searchsorted(PAIRS, teeth)] = part @ of_pair

@@ -20,12 +20,12 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import FlankPair, PinionSurface
 from facegear.contact.hertz import contact_modulus, strip_pressure
-from facegear.contact.lines import ContactLines, unloaded_lines
+from facegear.contact.lines import ContactLines, first_roll, unloaded_lines
 from facegear.contact.pattern import EDGES
 from facegear.contact.position import LoadedPosition, Spot
-from facegear.teeth import pinion
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.pinion import tip_roll
 from facegear.teeth.surfaces import flank_points
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
@@ -190,7 +190,7 @@ def flank_pressure(
     lines = unloaded_lines(design, position, tooth, unloaded_errors, flanks.pinion.planes)
     row = _rows(position, tooth)
     modulus = contact_modulus(materials)
-    lattice_rows = line_rows(lines.to_pinion_tip, flanks.pinion)
+    lattice_rows = line_rows(lines, flanks.pinion)
     spots, at = [], []
     for result in results:
         for spot in result.spots:
@@ -258,12 +258,11 @@ def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) ->
     ends = np.concatenate([[0], np.cumsum(counts)])
     spot, plane = np.nonzero(is_loaded)
     row = rows[spot]
-    slope = np.nan_to_num(lines.slope[row, plane])
+    lean, stretch = np.cos(np.nan_to_num(lines.slope[row, plane])), lines.stretch(row, plane)
     half = 0.5 * np.where(is_loaded, face, 0.0).sum(axis=1)[spot]
-    along = half / np.cos(slope)
-    line_load = load[is_loaded] * half / along
-    pressure, width = strip_pressure(line_load, lines.curvature[row, plane], modulus, along)
-    edge = _nearest_edge(lines, row, plane, width / np.cos(slope), owner[is_loaded] != plane)
+    line_load = load[is_loaded] / stretch
+    pressure, width = strip_pressure(line_load, lines.curvature[row, plane], modulus, half * stretch)
+    edge = _nearest_edge(lines, row, plane, width / lean, owner[is_loaded] != plane)
     inside = edge == INSIDE
     apart = _largest_nearby(np.abs(wider - load)[is_loaded], ends, spot)
     # in a short ellipse both averages are too low: load and length say by how much, and p goes with the root
@@ -273,7 +272,7 @@ def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) ->
     loads = LineLoads(
         line=row,
         plane=plane,
-        length=face[is_loaded] / np.cos(slope),
+        length=face[is_loaded] * stretch,
         line_load=line_load,
         edge=edge,
         pressure=np.where(inside, pressure, np.nan),
@@ -363,27 +362,27 @@ APART = 2.0
 contacts."""
 
 
-def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
+def line_rows(lines: ContactLines, surface: PinionSurface) -> Array:
     """Compute the row of the refined lattice at which contact lines lie, linear in the square of the roll
     angle.
 
     Parameters
     ----------
-    to_pinion_tip : (...) array
-        Distance of the line from the pinion's tip edge, m.
+    lines : ContactLines
+        Contact lines (p, n).
     surface : PinionSurface
         Contact surface of the pinion.
 
     Returns
     -------
-    (...) array
+    (p, n) array
         Row, dimensionless, 0 at the tip edge.
     """
     design = surface.design
-    top, bottom = design.pinion_tip_roll, max(pinion.junction_roll(design), 0.0)
+    top, bottom = tip_roll(design, lines.y), first_roll(design, lines.y)
     height = design.pinion_base_radius * (top**2 - bottom**2) / 2
     rows = (surface.side.flank_rows - 1) * surface.lattice.refinement.profile
-    return np.clip(to_pinion_tip / height, 0.0, 1.0) * rows
+    return np.clip(lines.to_pinion_tip / height, 0.0, 1.0) * rows
 
 
 def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:

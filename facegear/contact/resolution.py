@@ -34,8 +34,8 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
     """Compute the Hertz half-width of two pairs that share a torque evenly along the face, at the pitch
     point.
 
-    Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear
-    flank: b = sqrt(4 q R / (pi E*)), q = torque / (2 base radius * narrower face).
+    Line contact of a cylinder with the pinion's radius of curvature on the nearly flat gear flank: b =
+    sqrt(4 q R / (pi E*)), q the force along the normal of either pair per length of generator.
 
     Parameters
     ----------
@@ -52,9 +52,16 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
         Half-width, m.
     """
     face = design.face_gear.outer_radius - design.face_gear.inner_radius
-    line_load = torque / design.pinion_base_radius / (2 * min(face, design.pinion.width))
+    generator = min(face, design.pinion.width) / design.family.pinion_flanks[0].cosine
+    line_load = torque / design.normal_arm / (2 * generator)
     softness = sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
-    return sqrt(4 * line_load * design.pinion_pitch_radius * sin(design.pressure_angle) * softness / pi)
+    return sqrt(4 * line_load * _pitch_line_radius(design) * softness / pi)
+
+
+def _pitch_line_radius(design: PairDesign) -> float:
+    """Return the pinion's radius of curvature (m) across generators on its pitch cylinder."""
+    flank = design.family.pinion_flanks[0]
+    return flank.pitch_radius * sin(flank.pressure_angle) / flank.cosine
 
 
 def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
@@ -216,8 +223,8 @@ def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material]
     if not crownings and deviation_curvature == 0.0:
         return inf
     along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + deviation_curvature
-    across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
-    force = torque / design.pinion_base_radius / 2.0
+    across = 1.0 / _pitch_line_radius(design)
+    force = torque / design.normal_arm / 2.0
     return plain + contact_ellipse(force, across, along, contact_modulus(materials)).long
 
 

@@ -147,9 +147,7 @@ def facing_points(
     counts = [len(numbers) for numbers in teeth]
     phi1, phi2 = (np.repeat(part, counts) for part in np.array(placements).T)
     all_pairs = Placements(phi1, phi2, np.concatenate(teeth))
-    points, starts = _find_facing_points(
-        pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options
-    )
+    points, starts = _find_facing_points(pair, all_pairs, limit * pair.design.normal_arm + SAG, options)
     parts = []
     for (begin, end), numbers in zip(pairwise(np.cumsum([0, *counts])), teeth, strict=True):
         pair_starts = starts[begin : end + 1]

@@ -1,6 +1,6 @@
 """Contact side of a tooth mesh: loaded surface, its exact points, and supports of the body."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,11 +11,13 @@ from facegear.contact.options import Refinement
 from facegear.teeth import face_gear, face_gear_fillet
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.placement import mirror_design
 from facegear.teeth.surfaces import SurfacePoints, fillet_points, flank_points
 from facegear.teeth.tooth_mesh import FeTooth
 
 LOADED_SIDE = {"pinion": "right", "face_gear": "left"}
-"""Sides in contact when the pinion drives towards +x; the opposite flanks are their mirror images."""
+"""Sides in contact when the pinion drives towards +x; the opposite flanks are the loaded ones of
+`mirror_design`, seen in its mirror."""
 
 FILLET_MARGIN = 0.1
 """Modules of fillet kept as contact surface beyond what the other gear's tip can reach."""
@@ -63,13 +65,8 @@ def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) ->
     side = side or LOADED_SIDE[tooth.body]
     flank, fillet = (tooth.surfaces[f"{name}_{side}"] for name in ("flank", "fillet"))
     points = tooth.nodes[fillet.nodes]
-    if tooth.body == "pinion":
-        height = np.hypot(points[..., 0], points[..., 2])
-        reached_height = design.pinion_pitch_radius - design.face_gear.addendum + design.pinion.profile_shift
-    else:
-        height = points[..., 2]
-        reached_height = -design.pinion_tip_radius
-    is_touched = (height[:-1:2] > reached_height - FILLET_MARGIN * design.module).any(axis=1)
+    reached_height = _reached_height(design, tooth.body, points)
+    is_touched = (reached_height[:-1:2] > -FILLET_MARGIN * design.module).any(axis=1)
     elements = int(np.flatnonzero(is_touched).max() + 1) if is_touched.any() else 0
     rows = slice(1, 2 * elements + 1)
     return ContactSide(
@@ -79,6 +76,20 @@ def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) ->
         flank_rows=len(flank.nodes),
         junction=fillet.u[0],
     )
+
+
+def _reached_height(design: PairDesign, body: str, points: Array) -> Array:
+    """Return how far (m) fillet points (..., 3) of a tooth, in its body frame, stand above the place that the
+    other gear's tip surface reaches on the pitch line; negative below.
+    """
+    family = design.family
+    if body == "pinion":
+        reached = design.pinion_pitch_radius - design.face_gear.addendum + family.shift(points[..., 1])
+        return np.asarray(np.hypot(points[..., 0], points[..., 2]) - reached)
+    radius = np.hypot(points[..., 0], points[..., 1])
+    # the pinion's tip is a meridian as the gear's tip is, deeper by both addenda
+    depth = family.gear_tip.depth + design.face_gear.addendum + design.pinion.addendum
+    return np.asarray(points[..., 2] - replace(family.gear_tip, depth=depth).height(radius))
 
 
 def elastic_tooth(
@@ -102,8 +113,11 @@ def elastic_tooth(
     tuple[ElasticBody, ContactSide]
         Body and surface.
     """
+    side = side or LOADED_SIDE[tooth.body]
     surface = contact_side(design, tooth, side)
     rows = surface.flank_rows
+    if side != LOADED_SIDE[tooth.body]:
+        design = mirror_design(design)
     if tooth.body == "pinion":
         flank = flank_points(design, surface.u[:rows], surface.v[:rows]).normal
         fillet = fillet_points(design, surface.u[rows:], surface.v[rows:]).normal
@@ -111,7 +125,7 @@ def elastic_tooth(
         flank = face_gear.flank_normal(design, surface.u[:rows], surface.v[:rows])
         fillet = face_gear_fillet.fillet_normal(design, surface.v[rows:], surface.u[rows:])
     normals = np.concatenate([flank, fillet])
-    if (side or LOADED_SIDE[tooth.body]) == "left":
+    if side == "left":
         normals = normals * np.array([-1.0, 1.0, 1.0])
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     is_held = np.zeros(tooth.nodes.shape, dtype=bool)

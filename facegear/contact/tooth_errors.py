@@ -22,6 +22,7 @@ from facegear.teeth import face_gear, pinion
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_shapes import DeviationGrid
+from facegear.teeth.limits import common_face
 from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
 from facegear.teeth.opposite import tip_edge_feet
 from facegear.teeth.placement import pinion_angle
@@ -96,16 +97,16 @@ def loaded_curves(
     """
     cases = loads["variant"] == variant
     torques, positions = (np.unique(loads[name][cases]) for name in ("torque_n_m", "position"))
-    nodes = np.concatenate([[0.0], torques]) / design.pinion_base_radius
+    nodes = np.concatenate([[0.0], torques]) / design.normal_arm
     slopes: Array = np.asarray(np.gradient(np.eye(nodes.size), nodes, axis=0))
-    load_weights = [np.interp(torque / design.pinion_base_radius, nodes, column) for column in slopes.T[1:]]
+    load_weights = [np.interp(torque / design.normal_arm, nodes, column) for column in slopes.T[1:]]
     curves = {}
     for body in BODIES:
         forces = loads_by_tooth(loads, body, variant=variant)
         values = at_places(teeth[body], node_places(design, body, sides[body]))
         curve = np.zeros((len(teeth[body]), positions.size))
         for pair, matrix in forces.items():
-            tooth_error = (matrix @ values.T).reshape(torques.size, positions.size, -1)
+            tooth_error = (matrix[:, : values.shape[1]] @ values.T).reshape(torques.size, positions.size, -1)
             mean = np.tensordot(np.array(load_weights), tooth_error, axes=1)
             curve += np.roll(mean.T, pair, axis=0)
         curves[body] = curve.ravel()
@@ -133,12 +134,13 @@ def node_places(design: PairDesign, body: Body, side: ContactSide) -> tuple[Arra
     rows = side.flank_rows
     if body == "pinion":
         roll = side.u.copy()
-        roll[rows:] = pinion.junction_roll(design)
+        roll[rows:] = pinion.junction_roll(design, side.v[rows:])
         along, across = pinion.deviation_place(design, roll, side.v)
         return along.ravel(), across.ravel()
     points = face_gear.flank_point(design, side.u[:rows], side.v[:rows])
     radius = np.concatenate([np.hypot(points[..., 0], points[..., 1]), side.v[rows:]])
-    depth = np.concatenate([design.gear_tip_plane - points[..., 2], flank_depth(design)(side.v[rows:])])
+    to_tip = design.family.gear_tip.height(radius[:rows]) - points[..., 2]
+    depth = np.concatenate([to_tip, flank_depth(design)(side.v[rows:])])
     return radius.ravel(), depth.ravel()
 
 
@@ -180,19 +182,13 @@ def pair_gaps(design: PairDesign, cycle_positions: Array, planes: int = PLANES) 
     """
     positions, phi1 = len(cycle_positions), pinion_angle(design, cycle_positions)
     phi2, error = unloaded_motion(design, phi1)
-    gear, half = design.face_gear, design.pinion.width / 2
-    first = max(gear.inner_radius, design.mean_radius - half)
-    y = np.linspace(first, min(gear.outer_radius, design.mean_radius + half), planes)
+    y = np.linspace(*common_face(design), planes)
     tooth = np.repeat(PAIRS, positions)
     placement = np.tile(phi1, PAIRS.size), np.tile(phi2, PAIRS.size), tooth.astype(float)
     roll, gap, points = contact_gaps(design, placement, y)
-    inside = (
-        gap,
-        roll,
-        y + 0.0 * roll,
-        np.hypot(points[..., 0], points[..., 1]),
-        design.gear_tip_plane - points[..., 2],
-    )
+    radius = np.hypot(points[..., 0], points[..., 1])
+    depth = design.family.gear_tip.height(radius) - points[..., 2]
+    inside = gap, roll, y + 0.0 * roll, radius, depth
     edge = _tip_edge_gaps(design, placement, planes)
     gap, roll, y, radius, depth = (
         np.stack(parts, axis=1).reshape(PAIRS.size, positions, 2, planes)
@@ -218,8 +214,8 @@ def _tip_edge_gaps(
     """
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
-    top, bottom = design.pinion_tip_roll**2, pinion.junction_roll(design) ** 2
     feet = tip_edge_feet(design, edge, placement, None, design.module)
+    top, bottom = pinion.tip_roll(design, feet.y) ** 2, pinion.junction_roll(design, feet.y) ** 2
     roll = np.sqrt(np.maximum(top - feet.flank * (top - bottom), 0.0))
     radii = np.broadcast_to(radius, roll.shape)
     return feet.gap, roll, feet.y, radii, np.zeros(roll.shape)

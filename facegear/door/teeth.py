@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from facegear.build.kinds_of_teeth import require_kind
 from facegear.door.case import Case, drop_none
 from facegear.errors import ConfigError, FacegearError, extras_named
 from facegear.pipeline.outcome import Outcome
@@ -124,6 +125,7 @@ def displaced_contact(
             loaded_displaced_contact,
         )
 
+    require_kind(("displaced_contact",), self._values["tooth_pair"])
     for body, displacement in {"pinion": pinion, "face_gear": face_gear}.items():
         if displacement is not None and not isinstance(displacement, Mapping):
             raise FacegearError(f"{body} = {displacement!r}: must be a mapping such as {{'x_um': 10}}")

@@ -12,7 +12,7 @@ from facegear.errors import extras_named
 from facegear.io.atomic import atomic_path
 from facegear.quantities import BODIES, Body
 from facegear.teeth.design import AssemblyErrors, PairDesign
-from facegear.teeth.placement import body_rotation, rotation
+from facegear.teeth.placement import body_rotation, pair_at, rotation
 from facegear.teeth.solids import solid, triangles
 
 PROFILE, WIDTH = 9, 5
@@ -36,7 +36,8 @@ def write_gltf(
     path : str or Path
         File to write (.glb), lengths in m.
     design : PairDesign
-        Pair of gears; all pinions, and both face gears, have the same shape.
+        Pair of gears; all pinions have the same shape, and both face gears do unless an offset, or a shaft
+        angle other than 90 degrees, makes the lower one another gear.
     pinions : sequence of (str, float)
         Name and distribution angle about the gears' axis, rad, of each pinion.
     sides : sequence of str
@@ -57,16 +58,22 @@ def write_gltf(
 
     path, plain = Path(path), replace(design, assembly=AssemblyErrors())
     scene = trimesh.Scene()
-    placements = [(f"{side} face gear", BODIES[1], gear_transform(plain, side)) for side in sides]
-    placements += [(name, BODIES[0], pinion_transform(plain, angle)) for name, angle in pinions]
-    for name, body, transform in placements:
-        if body not in scene.geometry:
-            corners = _corners(plain, body)  # once, however many of them there are
+    placements = []
+    for side in sides:
+        pair = pair_at(plain, side, "drive")
+        shape_name = BODIES[1] if pair == plain else f"{side}_{BODIES[1]}"
+        placements.append((f"{side} face gear", shape_name, BODIES[1], pair, gear_transform(plain, side)))
+    placements += [
+        (name, BODIES[0], BODIES[0], plain, pinion_transform(plain, angle)) for name, angle in pinions
+    ]
+    for name, shape_name, body, pair, transform in placements:
+        if shape_name not in scene.geometry:
+            corners = _corners(pair, body)  # once, however many of them there are
             shape = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3))
             shape.merge_vertices(digits_vertex=9)
             shape.visual.face_colors = COLOURS[body]
-            scene.geometry[body] = shape
-        scene.graph.update(name, matrix=UPWARDS @ transform, geometry=body)
+            scene.geometry[shape_name] = shape
+        scene.graph.update(name, matrix=UPWARDS @ transform, geometry=shape_name)
     with atomic_path(path) as temporary:
         temporary.write_bytes(scene.export(file_type="glb"))
     return path
@@ -83,8 +90,8 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
     """Return the transform from the pinion's body frame to the frame of the upper gear, in mesh at a
     distribution angle.
 
-    The pinion is moved round the gear's axis z by the angle and turned about its own axis as the gear
-    ratio asks.
+    The pinion is turned about its own axis as the gear ratio asks, laid onto its axis in the gear's frame,
+    and moved round the gear's axis z by the angle.
 
     Parameters
     ----------
@@ -99,16 +106,19 @@ def pinion_transform(design: PairDesign, angle: float) -> Array:
         Homogeneous matrix for column vectors; rotations dimensionless, translations in m.
     """
     teeth = design.pinion.teeth
-    transform = _about_axis(angle)
-    transform[:3, :3] @= body_rotation("pinion", angle * design.face_gear.teeth / teeth - pi / teeth)
-    return transform
+    transform = np.eye(4)
+    spun = body_rotation("pinion", angle * design.face_gear.teeth / teeth - pi / teeth)
+    transform[:3, :3] = design.family.motion.basis.T @ spun
+    transform[0, 3] = design.offset
+    return _about_axis(angle) @ transform
 
 
 def gear_transform(design: PairDesign, side: str) -> Array:
     """Return the transform from a face gear's body frame to the frame of the upper gear.
 
-    The lower gear is the upper one turned by half a turn about the pinion's axis. With an odd number of
-    pinion teeth its tooth is where the upper gear has a space.
+    The lower gear stands in the frame turned by half a turn about y, where the pinion's axis, turned half
+    round itself, is that of `placement.pair_at`. With an odd number of pinion teeth its tooth is where the
+    upper gear has a space.
 
     Parameters
     ----------

@@ -10,10 +10,12 @@ from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 from facegear.build.config import Config
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError, FacegearError, plain_reason
 from facegear.io.atomic import atomic_path
 from facegear.machine.layout import Body
+from facegear.schema.tooth_pair import flank_angles_deg
 
 VERSION = "2.0"
 """Version of the REXS standard that files are written in."""
@@ -24,7 +26,7 @@ LOST_CONTENT = (
     "distribution angles, torques with their excitations, backlash, errors and damping",
     "inertias; REXS takes them from the shapes of bodies",
     "bearing stiffness along x and y where they differ: the smaller one is written",
-    "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",
+    "tooth thickness, addendum, dedendum, profile shift, taper, axial place and modifications of the pinion",
 )
 """Content of a machine that a file cannot hold."""
 
@@ -40,20 +42,30 @@ READ_UNITS = {
     "face_width": "mm",
     "inner_diameter": "mm",
     "normal_pressure_angle": "deg",
-    "helix_angle": "deg",
+    "helix_angle_reference_diameter": "deg",
 }
 """Attributes that are read, and the unit that REXS 2.0 gives each."""
+OLD_UNITS = {"°": "deg"}
+"""Names of units in versions of REXS before 1.4, and those of today."""
 
 
 @dataclass(frozen=True)
-class Spur:
-    """A spur pinion: teeth, module and width (mm), pressure angle (deg), bore (mm); None where not given."""
+class CylindricalGear:
+    """The teeth of a pinion; None where not given.
+
+    teeth: their number. module: normal module (mm). width: of the face (mm). bore: its radius (mm).
+    right_angle, left_angle: normal pressure angles (deg) of the right and the left flank, seen from the
+    pinion's outer end: in the package's terms the drive and the coast flank. helix_angle: at the
+    reference circle (deg), positive for a right-hand gear.
+    """
 
     teeth: int
     module: float
     width: float | None
-    pressure_angle: float | None
+    right_angle: float | None
+    left_angle: float | None
     bore: float | None
+    helix_angle: float | None = None
 
 
 @dataclass(frozen=True)
@@ -64,7 +76,7 @@ class Shaft:
     mass: float | None
     radial: float | None
     axial: float | None
-    spur: Spur | None = None
+    gear: CylindricalGear | None = None
 
 
 @dataclass(frozen=True)
@@ -144,8 +156,8 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
         bearing = model.component("concept_bearing", f"bearing of {shaft.name}", *stiffness)
         model.relation("assembly", ("assembly", whole), ("part", number))
         model.relation("side", ("assembly", bearing), ("inner_part", number), ("outer_part", casing))
-        if shaft.spur is not None:
-            _add_gear(model, shaft.name, shaft.spur, number, material)
+        if shaft.gear is not None:
+            _add_gear(model, shaft.name, shaft.gear, number, material)
     model.root.insert(0, Xml.Comment(" Lost, as REXS has no face gear: " + "; ".join(LOST_CONTENT) + " "))
     Xml.indent(model.root)
     with atomic_path(path) as temporary:
@@ -153,23 +165,23 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
     return Path(path)
 
 
-def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -> None:
-    """Add the spur gear of a pinion, with both flanks, and relate it to its shaft and material (component
-    ids).
-    """
+def _add_gear(model: _Model, name: str, teeth: CylindricalGear, shaft: int, material: int) -> None:
+    """Add the gear of a pinion, with both flanks, and relate it to its shaft and material (component ids)."""
     sizes = (
-        ("number_of_teeth", "none", spur.teeth),
-        ("normal_module", "mm", spur.module),
-        ("face_width", "mm", spur.width),
-        ("inner_diameter", "mm", None if spur.bore is None else 2.0 * spur.bore),
+        ("number_of_teeth", "none", teeth.teeth),
+        ("normal_module", "mm", teeth.module),
+        ("helix_angle_reference_diameter", "deg", teeth.helix_angle),
+        ("face_width", "mm", teeth.width),
+        ("inner_diameter", "mm", None if teeth.bore is None else 2.0 * teeth.bore),
     )
     gear = model.component("cylindrical_gear", f"teeth of {name}", *sizes)
     model.relation("assembly", ("assembly", shaft), ("part", gear))
     model.relation("reference", ("origin", gear), ("referenced", material))
-    angle = ("normal_pressure_angle", "deg", spur.pressure_angle)
     flanks = [
-        model.component("cylindrical_gear_flank", f"{side} flank of {name}", angle)
-        for side in ("left", "right")
+        model.component(
+            "cylindrical_gear_flank", f"{side} flank of {name}", ("normal_pressure_angle", "deg", angle)
+        )
+        for side, angle in (("left", teeth.left_angle), ("right", teeth.right_angle))
     ]
     members = zip(("left", "right"), flanks, strict=True)
     model.relation("flank", ("gear", gear), *members)
@@ -193,8 +205,8 @@ def read_rexs(path: str | Path) -> Unit:
     ------
     FacegearError
         For a file that is no REXS file in XML, an attribute that is no number or has another unit than REXS
-        gives it, an id that occurs twice, a part that a relation names and the file lacks, a helical gear,
-        and a gear without number of teeth or module.
+        gives it, an id that occurs twice, a part that a relation names and the file lacks, and a gear without
+        number of teeth or module.
     """
     _refuse_other_forms(Path(path))
     try:
@@ -302,46 +314,37 @@ def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
         mass=_value(parts[number], "mass_of_component"),
         radial=_value(bearing, "radial_stiffness"),
         axial=_value(bearing, "axial_stiffness"),
-        spur=None if teeth is None else _spur(teeth, parts, relations),
+        gear=None if teeth is None else _cylindrical_gear(teeth, parts, relations),
     )
 
 
-def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
-    """Read a spur gear (component id `gear`); raise _Fault for a helical one and one without teeth or
-    module.
+def _cylindrical_gear(gear: str, parts: Parts, relations: Relations) -> CylindricalGear:
+    """Read a cylindrical gear (component id `gear`); raise _Fault for one without teeth or module.
 
-    The pressure angle is that of the first flank that gives one; the bore is half the inner diameter, mm.
+    A flank without a pressure angle has that of the other; the bore is half the inner diameter, mm.
     """
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
         raise _Fault(f"gear {gear} has no number of teeth or no normal module")
-    for part in (gear, *_flanks_of(gear, relations)):
-        helix = _value(parts[part], "helix_angle")
-        if helix:
-            raise _Fault(
-                f"gear {gear}: helix_angle = {helix:g} deg: must be 0, as only spur pinions are read"
-            )
     if count != round(count):
         raise _Fault(f"gear {gear}: number_of_teeth = {count:g}: must be a whole number")
-    angles = [_value(parts[number], "normal_pressure_angle") for number in _flanks_of(gear, relations)]
+    flanks = next(
+        (members for kind, members in relations if kind == "flank" and members.get("gear") == gear), {}
+    )
+    right, left = (
+        _value(parts[flanks[side]], "normal_pressure_angle") if side in flanks else None
+        for side in ("right", "left")
+    )
     bore = _value(parts[gear], "inner_diameter")
-    return Spur(
+    return CylindricalGear(
         teeth=round(count),
         module=module,
         width=_value(parts[gear], "face_width"),
-        pressure_angle=next((angle for angle in angles if angle is not None), None),
+        right_angle=left if right is None else right,
+        left_angle=right if left is None else left,
         bore=None if bore is None else 0.5 * bore,
+        helix_angle=_value(parts[gear], "helix_angle_reference_diameter"),
     )
-
-
-def _flanks_of(gear: str, relations: Relations) -> list[str]:
-    """Return the ids in the gear's relations of type "flank": the gear itself and its flanks."""
-    return [
-        number
-        for kind, members in relations
-        if kind == "flank" and members.get("gear") == gear
-        for number in members.values()
-    ]
 
 
 def _value(part: Xml.Element | None, key: str) -> float | None:
@@ -354,14 +357,12 @@ def _value(part: Xml.Element | None, key: str) -> float | None:
     if part is not None and len(attributes) > 1:
         raise _Fault(f"component {part.attrib['id']}: attribute {key} stands twice: must be unique")
     text = attributes[0].text if attributes else None
-    if (
-        part is not None
-        and attributes
-        and (unit := attributes[0].attrib.get("unit", READ_UNITS[key])) != READ_UNITS[key]
-    ):
-        raise _Fault(
-            f"component {part.attrib['id']}: unit of {key} = {unit[:40]!r}: must be {READ_UNITS[key]!r}"
-        )
+    if part is not None and attributes:
+        unit = attributes[0].attrib.get("unit", READ_UNITS[key])
+        if OLD_UNITS.get(unit, unit) != READ_UNITS[key]:
+            raise _Fault(
+                f"component {part.attrib['id']}: unit of {key} = {unit[:40]!r}: must be {READ_UNITS[key]!r}"
+            )
     if part is None or text is None or not text.strip():
         return None
     try:
@@ -398,24 +399,27 @@ def gear_unit(config: Config) -> Unit:
     if machine is None:
         raise ConfigError("transmission", None, "given, as REXS describes shafts and bearings")
     body = pair.pinion
-    spur = Spur(
+    drive, coast = flank_angles_deg(pair.pressure_angle_deg)
+    teeth = CylindricalGear(
         teeth=pair.pinion_teeth,
         module=pair.module_mm,
         width=None if body is None else body.width_mm,
-        pressure_angle=pair.pressure_angle_deg,
+        right_angle=drive,
+        left_angle=coast,
         bore=None if body is None else body.bore_radius_mm,
+        helix_angle=pair.helix_angle_deg,
     )
     machine_layout = layout(machine, ToothNumbers.of_config(pair.model_dump()))
-    shafts = [_pinion(pinion.name, pinion.body, spur) for pinion in machine_layout.pinions]
+    shafts = [_pinion(pinion.name, pinion.body, teeth) for pinion in machine_layout.pinions]
     shafts += [_gear(gear.name, gear.body) for gear in machine_layout.gears]
     material = (body and body.material) or pair.material
     return Unit(tuple(shafts), 1e3 * material.young_modulus_gpa, material.poisson_ratio)
 
 
-def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
+def _pinion(name: str, body: Body, teeth: CylindricalGear) -> Shaft:
     """Return a pinion as a shaft with its teeth; its radial stiffness is the smaller one of x and y, N/m."""
     x, y, z = body.bearing
-    return Shaft(name, body.mass, min(x, y), z, spur)
+    return Shaft(name, body.mass, min(x, y), z, teeth)
 
 
 def _gear(name: str, body: Body) -> Shaft:

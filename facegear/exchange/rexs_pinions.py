@@ -48,21 +48,23 @@ def known_of_rexs(path: str | Path) -> RexsPinions:
     FacegearError
         For a file without cylindrical gears, or with several kinds of them.
     """
-    shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
-    spurs = {shaft.spur for shaft in shafts if shaft.spur is not None}
-    if len(spurs) != 1:
-        sizes = sorted((spur.teeth, spur.module) for spur in spurs)
+    shafts = [shaft for shaft in read_rexs(path).shafts if shaft.gear is not None]
+    gears = {shaft.gear for shaft in shafts if shaft.gear is not None}
+    if len(gears) != 1:
+        sizes = sorted((gear.teeth, gear.module) for gear in gears)
         descriptions = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
         raise FacegearError(f"{path}: cylindrical gears = {descriptions}: must be equal pinions")
-    (spur,) = spurs
+    (teeth,) = gears
     first = shafts[0]
     file_values = {
         "pinions": len(shafts),
-        "pinion_teeth": spur.teeth,
-        "module_mm": spur.module,
-        "pressure_angle_deg": spur.pressure_angle,
-        "pinion_width_mm": spur.width,
-        "pinion_bore_radius_mm": spur.bore,
+        "pinion_teeth": teeth.teeth,
+        "module_mm": teeth.module,
+        "pressure_angle_deg": teeth.right_angle,
+        "coast_pressure_angle_deg": None if teeth.left_angle == teeth.right_angle else teeth.left_angle,
+        "helix_angle_deg": teeth.helix_angle or None,
+        "pinion_width_mm": teeth.width,
+        "pinion_bore_radius_mm": teeth.bore,
         "pinion_mass_kg": first.mass,
         "input_bearing_n_per_m": first.radial,
         "idler_bearing_n_per_m": first.radial,

@@ -65,7 +65,7 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
     parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
     sums = np.zeros((positions.size, 5))
     np.add.at(sums, row, parts)
-    return sums * design.pinion_base_radius / float(hats.torque[0])
+    return sums * design.normal_arm / float(hats.torque[0])
 
 
 def excitation_table(pair: LoadedPair, states: Sequence[Running], design: PairDesign) -> pd.DataFrame:

@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.contact.lines import ContactLines
-from facegear.teeth import pinion
 from facegear.teeth.design import PairDesign
+from facegear.teeth.helicoid import pinion_fillet, pinion_start
 from facegear.teeth.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
 from facegear.teeth.surfaces import flank_points
+from facegear.teeth.tooth_family import stack_vectors
 
-FILLET_SAMPLES = 4001
-"""Number of points of the fillet between which its normal is interpolated."""
+HALVINGS = 40
+"""Bisections of the slope of the root's normal, which leave 1e-12 rad of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +139,9 @@ def pinion_pose(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidM
 def surface_normals(design: PairDesign, points: Array) -> Array:
     """Compute the outward unit normals at points of the pinion's right flank or its fillet.
 
-    A point of the involute lies on a tangent of the base circle, and so it does where a relief moved it
-    along that tangent; the normal is the tangent. Below the end of the involute it is the normal of the
-    trochoid at the same radius, interpolated between FILLET_SAMPLES points.
+    In its section across the axis a point of the flank lies on a tangent of the base circle, and so it does
+    where a relief moved it along that tangent; the normal leans from the tangent by the base helix. Below
+    the end of the involute it is the normal of the root at the same radius and place.
 
     Parameters
     ----------
@@ -152,21 +153,25 @@ def surface_normals(design: PairDesign, points: Array) -> Array:
     Returns
     -------
     (n, 3) array
-        Unit normals in the body frame, without a y component, dimensionless.
+        Unit normals in the body frame, dimensionless.
     """
-    x, z = points[..., 0], points[..., 2]
-    radius, angle = np.hypot(x, z), np.arctan2(x, -z)
-    roll = np.sqrt(np.maximum((radius / design.pinion_base_radius) ** 2 - 1.0, 0.0))
-    tangent = angle - np.arctan(roll)
-    nx, nz = np.cos(tangent), np.sin(tangent)
-    end, _ = pinion.involute_point(design, max(pinion.junction_roll(design), 0.0))
-    below = radius < end * (1 - 1e-12)
+    x, y, z = np.moveaxis(points, -1, 0)
+    flank, radius = design.family.pinion_flanks[0], np.hypot(x, z)
+    roll = np.sqrt(np.maximum((radius / flank.base_radius) ** 2 - 1.0, 0.0))
+    tangent = np.arctan2(x, -z) - np.arctan(roll)
+    normals = stack_vectors(flank.cosine * np.cos(tangent), flank.sine, flank.cosine * np.sin(tangent))
+    start = np.hypot(flank.base_radius, np.maximum(pinion_start(design.family, 1, y), 0.0))
+    below = radius < start * (1 - 1e-12)
     if below.any():
-        gamma = np.linspace(design.pressure_angle, 0.5 * pi, FILLET_SAMPLES)
-        radii, _ = pinion.trochoid_point(design, gamma)
-        angles = np.interp(radius[below], radii[::-1], gamma[::-1])
-        nx[below], nz[below] = pinion.trochoid_normal(design, angles)
-    return np.stack([nx, np.zeros_like(nx), nz], axis=-1)
+        root, at = pinion_fillet(design.family, 1), y[below]
+        low, high = np.full(at.shape, flank.pressure_angle), np.full(at.shape, 0.5 * pi)
+        for _ in range(HALVINGS):
+            gamma = 0.5 * (low + high)
+            place = root.point(gamma, at)
+            is_above = np.hypot(place[..., 0], place[..., 2]) > radius[below]
+            low, high = np.where(is_above, gamma, low), np.where(is_above, high, gamma)
+        normals[below] = root.normal(0.5 * (low + high), at)
+    return normals
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,9 +195,10 @@ class LineKinematics:
 def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, tooth: Array) -> LineKinematics:
     """Compute sliding and rolling velocities at the points of contact lines.
 
-    On the pinion's flank t points across the profile towards its axis and e along that axis. The line is
-    l = cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e. Sliding is that
-    of the pinion over the gear.
+    On the pinion's flank t points across the profile towards its axis and e along its generator. The line
+    is l = cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e. Sliding is
+    that of the pinion over the gear. Seen from the contact, which runs along the common normal, the pinion
+    moves by s t - eta r_b e, s its transverse length of roll and eta the sine of its base helix.
 
     Parameters
     ----------
@@ -214,19 +220,20 @@ def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, to
     stands = pinion_pose(design, pinion_angle(design, position), tooth)
     points, normals = stands.points(surface.position), stands.directions(surface.normal)
     sliding, _ = slip(*spins(design), points, normals)
-    nx, nz = surface.normal[..., 0], surface.normal[..., 2]
+    flank = design.family.pinion_flanks[0]
+    nx, nz = surface.normal[..., 0] / flank.cosine, surface.normal[..., 2] / flank.cosine
     profile = stands.directions(np.stack([-nz, np.zeros_like(nx), nx], axis=-1))
-    axial = stands.directions(np.broadcast_to([0.0, 1.0, 0.0], surface.normal.shape))
-    down, beside = (np.einsum("...i,...i->...", sliding, way) for way in (profile, axial))
+    lean = np.stack([-flank.sine * nx, np.full_like(nx, flank.cosine), -flank.sine * nz], axis=-1)
+    generator = stands.directions(lean)
+    down, beside = (np.einsum("...i,...i->...", sliding, way) for way in (profile, generator))
     cosine, sine = np.cos(lines.slope), np.sin(lines.slope)
     across, along = cosine * down - sine * beside, sine * down + cosine * beside
-    rho = design.pinion_base_radius * lines.roll
-    u1 = rho * cosine
+    u1 = design.pinion_base_radius * (lines.roll * cosine + flank.sine * sine)
     return LineKinematics(
         sliding=np.hypot(down, beside),
         across=across,
         along=along,
         u1=u1,
         u2=u1 - across,
-        line_entrainment=rho * sine - 0.5 * along,
+        line_entrainment=u1 * sine / cosine - 0.5 * along,
     )

@@ -95,13 +95,13 @@ def _assembly(
     if len(layout.gears) < 2:
         zeros = np.zeros(count)
         return Assembly(zeros, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
-    clearance = half_backlash.reshape(len(layout.gears), count).sum(axis=0)
+    clearance = half_backlash.reshape(len(layout.gears), count).sum(axis=0) * _play(layout)
     ahead = clocking - 2.0 * pitches
     if errors is not None:
         lower, upper = np.split(errors.error, 2)
-        cosine = np.cos(layout.pressure_angle)
-        ahead = ahead + (upper - lower - 2.0 * cosine * errors.position[:, 0]) / layout.base_pitch
-        clearance = clearance + 2.0 * cosine * errors.bearing_clearance
+        below, above = (_tangential_part(layout, gear) for gear in (0, 1))
+        ahead = ahead + (upper - lower - errors.positions @ (above - below)) / layout.base_pitch
+        clearance = clearance + np.hypot(*(above - below)[:2]) * errors.bearing_clearance
     reach = clearance / layout.base_pitch + 0.5 * ANGLE_ROUNDING
     together = np.abs(_wrap_pitches(ahead[:, None] - ahead)) <= reach[:, None] + reach
     hardest = int(np.argmax(together.sum(axis=1)))
@@ -117,8 +117,8 @@ def _assembly(
 def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
     """Return how much deeper a pinion stands in each mesh than backlash and clearance allow.
 
-    It is sin(pressure angle) times (shift of the pinion's bearing towards the gear, less its clearance),
-    less half the backlash.
+    It is the part of the flanks' normals that both share times (shift of the pinion's bearing along it, less
+    its clearance), less half the backlash.
 
     Parameters
     ----------
@@ -135,10 +135,29 @@ def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfecti
         m along the line of action; positive where both flanks of a tooth would be pressed with the
         machine at rest.
     """
-    sine = np.sin(layout.pressure_angle)
-    side = np.array([[gear.sign] for gear in layout.gears])
-    deeper = sine * (side * errors.position[:, 1] - errors.bearing_clearance)
-    return np.asarray(deeper.ravel() - half_backlash)
+    depths = []
+    for gear in range(len(layout.gears)):
+        drive, back = layout.flank_frames[gear]
+        common_part = 0.5 * (np.array(drive.normal) + np.array(back.normal) / layout.back_arm)
+        size = float(np.hypot(*common_part[:2]))
+        direction = common_part / size
+        depths.append(size * (errors.positions @ direction - errors.bearing_clearance))
+    return np.asarray(np.concatenate(depths) - half_backlash * _play(layout))
+
+
+def _tangential_part(layout: Layout, gear: int) -> Array:
+    """Return by how much a pinion's motion along its x, y, z turns its place between both flanks of a gear's
+    tooth, along the drive flank's line of action, (3,), m/m.
+    """
+    drive, back = layout.flank_frames[gear]
+    return 0.5 * (np.array(drive.normal) - np.array(back.normal) / layout.back_arm)
+
+
+def _play(layout: Layout) -> float:
+    """Return the mean of what half the backlash of both flanks is along the drive flank's line of action: 1
+    where both have one pressure angle.
+    """
+    return 0.5 * (1.0 + 1.0 / layout.back_arm)
 
 
 def _wrap_pitches(pitches: Array) -> Array:

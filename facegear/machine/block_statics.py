@@ -1,7 +1,8 @@
 """Static equilibrium of pinions that touch each other through the gears only, by a compiled kernel.
 
 The method stands in `facegear/_kernels/src/statics/settle.hpp`: a semismooth Newton method with an exact line
-search, each pinion eliminated by itself.
+search, each pinion eliminated by itself. On a casing the unknowns of a body are its motions against its seat,
+so that no bearing joins a pinion with anything else; the seats stand among the unknowns of the gears.
 """
 
 from collections.abc import Callable, Mapping
@@ -13,6 +14,7 @@ import numpy as np
 
 from facegear._kernels import statics
 from facegear.arrays import Array, Integers
+from facegear.machine.casing_coordinates import SeatMotion
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.machine import Machine
 from facegear.meshing.law import LawAtPhases, LinearHeld, LoadDependentHeld
@@ -128,12 +130,15 @@ class StaticBlocks:
         What 1 m of each unknown is in m or rad.
     size : int
         Number of all degrees of freedom.
+    seat_motions : SeatMotion or None
+        Motion of bodies with their seats, which is taken off their unknowns; None where seats stand still.
     """
 
     springs: Springs
     coordinates: Integers
     scale: Array
     size: int
+    seat_motions: SeatMotion | None = None
 
     def displacements(self, solution: Array) -> Array:
         """Return the displacements of all degrees of freedom.
@@ -150,7 +155,7 @@ class StaticBlocks:
         """
         displacements = np.zeros((len(solution), self.size))
         np.add.at(displacements.T, self.coordinates, (solution * self.scale).T)
-        return displacements
+        return displacements if self.seat_motions is None else self.seat_motions.absolute(displacements)
 
 
 def static_blocks(machine: Machine) -> StaticBlocks | None:
@@ -170,6 +175,8 @@ def static_blocks(machine: Machine) -> StaticBlocks | None:
         The problem with the machine's loads and bearing clearances; flank gaps are given to `settle_all`.
     """
     blocks, loads = _unloaded_blocks(machine.without_errors), machine.linear.loads
+    if blocks is not None and blocks.seat_motions is not None:
+        loads = blocks.seat_motions.along_relative(loads)
     if blocks is None or np.delete(loads, blocks.coordinates).any():
         return None
     springs = blocks.springs._replace(
@@ -185,13 +192,18 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
     bearings and meshes share it.
     """
     layout, linear = machine.layout, machine.linear
-    stiffness, rows = linear.stiffness, linear.rows
+    stiffness, rows, seat_motions = linear.stiffness, linear.rows, None
     coordinates, scale = _select_unknowns(layout, linear.lengths)
+    if machine.casing is not None and not machine.casing.is_condensed:
+        seat_motions = machine.casing.seat_motion(linear, machine.drive_line)
+        stiffness, rows = seat_motions.relative_stiffness(stiffness), seat_motions.along_relative(rows)
+        # A mode of the casing takes no load at rest.
+        is_moved = ~np.isin(coordinates, seat_motions.modes)
+        coordinates, scale = coordinates[is_moved], scale[is_moved]
     if not _has_blocks(layout, coordinates, stiffness, rows):
         return None
-    return StaticBlocks(
-        _springs(layout, coordinates, scale, stiffness, rows), coordinates, scale, linear.size
-    )
+    springs = _springs(layout, coordinates, scale, stiffness, rows)
+    return StaticBlocks(springs, coordinates, scale, linear.size, seat_motions)
 
 
 def _has_blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:

@@ -239,13 +239,26 @@ class DriveLine:
             labels=(*model.labels, *self._labels()),
             mass=mass,
             stiffness=stiffness + torsion,
-            rows=np.pad(model.rows, ((0, 0), (0, added_count))),
+            rows=self._rows(model),
             torques=torques,
             forces=np.pad(model.forces, (0, added_count)),
             lengths=np.append(model.lengths, self._lengths()),
             dampers=np.pad(model.dampers, (0, added_count)) + dampers,
             spin=self._spin(model),
         )
+
+    def _rows(self, model: LinearModel) -> Array:
+        """Return the rows of the flanks over all coordinates, (flanks, n + size): zero for turning masses,
+        the moment of the flank's normal about the middle of the pinion's face for tilts.
+        """
+        rows, layout = np.pad(model.rows, ((0, 0), (0, self.size))), self.layout
+        if layout.kind is None:
+            return rows
+        for mesh, (pinion, gear) in enumerate(layout.meshes):
+            if pinion in self.tilting:
+                for flank, frame in enumerate(layout.flank_frames[gear]):
+                    rows[mesh + flank * len(layout.meshes), self.tilts(pinion)] = frame.moment[:2]
+        return rows
 
     def _inertias(self) -> Array:
         """Return the inertias of the added coordinates (size,): tilts, then turning masses, kg m^2."""
@@ -338,9 +351,9 @@ class DriveLine:
         -------
         bool
             False where an axial force loads a pinion whose bearings couple axial and other motions, and
-            with rolling bearings.
+            with rolling bearings, and where meshes push pinions along their axes or tilt them.
         """
-        if self.rolling:
+        if self.rolling or (self.layout.kind is not None and self.seats):
             return False
         axial_coordinates = [self.motions(i)[2] for i, seat in self.seats.items() if seat.couples_axially]
         return not model.forces[axial_coordinates].any()

@@ -10,6 +10,7 @@ from facegear.harmonics import Harmonics
 from facegear.machine.assembly import assembly
 from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import Machine
+from facegear.machine.mesh_phases import place_lags
 
 
 def _lags(phases: Array) -> tuple[float, ...]:
@@ -17,6 +18,24 @@ def _lags(phases: Array) -> tuple[float, ...]:
     equal lags compare as equal.
     """
     return tuple((np.round(phases, 12) % 1.0).tolist())
+
+
+def flank_lags(machine: Machine, phases: Array) -> Array:
+    """Return the lags of drive, then back flanks, from those of the meshes and the places of the pinions.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    phases : (meshes,) array
+        Lags of the meshes, mesh periods.
+
+    Returns
+    -------
+    (2 meshes,) array
+        Mesh periods.
+    """
+    return np.tile(phases, 2) + place_lags(machine.layout, machine.imperfections.outwards)
 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:
@@ -43,7 +62,7 @@ def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
     """Return `error_series` of a machine without constant errors; cached by the machine's identity."""
     mesh_series = machine.imperfections.series
     shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
-    return _flank_series(tuple(shapes), machine.error_phases)
+    return _flank_series(tuple(shapes), flank_lags(machine, machine.error_phases))
 
 
 @lru_cache(maxsize=16)
@@ -63,13 +82,18 @@ def constant_errors(machine: Machine) -> Array:
         m; positive keeps the flank from touching.
     """
     layout, errors = machine.layout, machine.imperfections
-    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     misfit = assembly(layout, machine.half_backlash, errors.clocking).misfit
-    side = np.array([[gear.sign] for gear in layout.gears])
-    lower = np.array([[float(gear.side is Side.LOWER)] for gear in layout.gears])
-    off = side * cosine * errors.position[:, 0] + lower * misfit
-    separating_error = -side * sine * errors.position[:, 1]
-    return _flanks(errors.error - off.ravel(), separating_error.ravel())
+    late, separating_error = np.zeros((2, 2, len(layout.meshes)))
+    for mesh, (i, g) in enumerate(layout.meshes):
+        lower = float(layout.gears[g].side is Side.LOWER)
+        for flank, frame in enumerate(layout.flank_frames[g]):
+            # along the tangent both flanks come late by opposite parts, as a turn of the pinion makes them
+            x, y, z = frame.normal
+            late[flank, mesh] = errors.error[mesh] - (
+                x / frame.arm * errors.position[i, 0] + lower * misfit[i]
+            )
+            separating_error[flank, mesh] = -y * errors.position[i, 1] - z * errors.outwards[i]
+    return _flanks(layout, late, separating_error)
 
 
 def slow_errors(machine: Machine, cycles: Array) -> Array:
@@ -92,22 +116,25 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         m.
     """
     layout, errors = machine.layout, machine.imperfections
-    tangential, separating_error = np.zeros((2, cycles.size, len(layout.meshes)))
-    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    late, separating_error = np.zeros((2, 2, cycles.size, len(layout.meshes)))
     from_first = 2.0 * np.pi * layout.pitches_from_first / layout.gear_teeth
     for mesh, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
-        runout = errors.pinion_runout[i]
-        turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
-        tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
-        separating_error[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
-        runout = errors.gear_runout[g]
-        turn = 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase - side * from_first[i]
-        tangential[:, mesh] += cosine * runout.amplitude * np.sin(turn)
         on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
-        tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
-        tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
-    return _flanks(tangential, separating_error) - _early_teeth(machine, cycles)
+        deviation = _deviation(errors.gear_pitch.get(g), on_gear)
+        pinion_deviation = _deviation(errors.pinion_pitch.get(i), on_pinion)
+        runout, gear_runout = errors.pinion_runout[i], errors.gear_runout[g]
+        turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
+        gear_turn = 2.0 * np.pi * cycles / layout.gear_teeth + gear_runout.phase - side * from_first[i]
+        for flank, frame in enumerate(layout.flank_frames[g]):
+            (x, y, _), (across, _, outwards) = frame.normal, frame.gear_normal
+            late[flank, :, mesh] -= x / frame.arm * runout.amplitude * np.sin(turn)
+            separating_error[flank, :, mesh] -= y * runout.amplitude * np.cos(turn)
+            late[flank, :, mesh] += side * across / frame.arm * gear_runout.amplitude * np.sin(gear_turn)
+            separating_error[flank, :, mesh] += outwards * gear_runout.amplitude * np.cos(gear_turn)
+            late[flank, :, mesh] -= layout.pitch_slope * pinion_deviation
+            late[flank, :, mesh] += layout.pitch_slope * deviation
+    return _flanks(layout, late, separating_error) - _early_teeth(machine, cycles)
 
 
 def _early_teeth(machine: Machine, cycles: Array) -> Array:
@@ -177,22 +204,23 @@ def mirror_series(series: Harmonics) -> Harmonics:
 
 @kept_by_content(8)
 def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
-    """Return the series of all drive flanks, then of all back flanks, each shifted by the lag of its
-    mesh.
+    """Return the series of all drive flanks, then of all back flanks, each shifted by its lag.
 
-    drive: series of each mesh without lag, of which back flanks have the mirror image f(-t); phases
-    (meshes,), mesh periods.
+    drive: series of each mesh without lag, of which back flanks have the mirror image f(-t); phases (2
+    meshes,): lags of the flanks, mesh periods.
     """
     flanks = [*drive, *(mirror_series(series) for series in drive)]
-    lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
+    lags = [float(lag) for lag in np.round(phases, 12)]
     return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
 
 
-def _flanks(tangential: Array, separating_error: Array) -> Array:
-    """Return errors (..., 2 meshes) of drive flanks, separating + tangential, then of back flanks,
-    separating - tangential; both arguments (..., meshes), m.
+def _flanks(layout: Layout, late: Array, separating_error: Array) -> Array:
+    """Return errors (..., 2 meshes), drive flanks first: separating error plus the arm of the flank times
+    what comes late, both (2, ..., meshes), m; the second along the drive flank's line of action.
     """
-    return np.concatenate([separating_error + tangential, separating_error - tangential], axis=-1)
+    drive, back = late
+    flank_errors = separating_error[0] + drive, separating_error[1] - layout.back_arm * back
+    return np.concatenate(flank_errors, axis=-1)
 
 
 def _deviation(curve: Array | None, tooth_positions: Array) -> Array:

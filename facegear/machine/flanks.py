@@ -15,7 +15,13 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.by_content import kept_by_content
 from facegear.harmonics import Harmonics
-from facegear.machine.flank_errors import _flank_series, _lags, constant_errors, error_series
+from facegear.machine.flank_errors import (
+    _flank_series,
+    _lags,
+    constant_errors,
+    error_series,
+    flank_lags,
+)
 from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
 from facegear.meshing.force_table import ForceTable, shift_tables
 from facegear.meshing.law import MeshLaw
@@ -147,7 +153,7 @@ def _line_contacts(machine: Machine) -> MeshContacts:
 
 
 def flank_law(machine: Machine) -> MeshLaw:
-    """Return the force law of all drive flanks, then all back flanks, each with the lag of its mesh.
+    """Return the force law of all drive flanks, then all back flanks, each with its own lag.
 
     `machine.law` wins where it is given; else the law is made from `machine.tables`; else it is linear
     with `machine.mesh_stiffness`. A back flank has the mirrored series.
@@ -171,10 +177,11 @@ def _flank_law(machine: Machine) -> MeshLaw:
     """Return the force law of all flanks of a machine without errors; cached by the machine's identity."""
     if machine.law is not None:
         return machine.law
+    phases = flank_lags(machine, machine.phases)
     if machine.tables is None:
-        return _linear_law(machine.mesh_stiffness, machine.phases)
+        return _linear_law(machine.mesh_stiffness, phases)
     gears, factors = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
-    return _law_of_tables(machine.tables, gears, factors, machine.own_softening, _lags(machine.phases))
+    return _law_of_tables(machine.tables, gears, factors, machine.own_softening, _lags(phases))
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
@@ -209,7 +216,8 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
     """Return the linear law of all drive flanks, then all back flanks.
 
-    stiffness: series of each mesh over the reference's cycle, N/m; phases (meshes,): lags, mesh periods.
+    stiffness: series of each mesh over the reference's cycle, N/m; phases (2 meshes,): lags of the flanks,
+    mesh periods.
     """
     return linear_law(_flank_series(stiffness, phases))
 
@@ -222,12 +230,11 @@ def _law_of_tables(
     softening: Array | None,
     lags: tuple[float, ...],
 ) -> LoadDependentLaw:
-    """Return the load-dependent law of all drive flanks, then all back flanks, each with the lag of its
-    mesh.
+    """Return the load-dependent law of all drive flanks, then all back flanks, each with its lag.
 
     tables: one `FlankTables` for each gear; gears (meshes,): number of each mesh's gear; factors
     (meshes,) on the forces; softening (meshes,): compliance in series with both flanks, m/N, or None;
-    lags (meshes,), mesh periods.
+    lags (2 meshes,) of the flanks, mesh periods.
     """
     mirrored_backs = [gear_tables.back.mirror() for gear_tables in tables]
     drives, backs = [tables[g].drive for g in gears], [mirrored_backs[g] for g in gears]
@@ -238,7 +245,7 @@ def _law_of_tables(
     if softening is not None:
         soft = 2 * softening.tolist()
         flanks = [soften_table(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
-    return load_dependent_law(shift_tables(flanks, 2 * lags))
+    return load_dependent_law(shift_tables(flanks, lags))
 
 
 @lru_cache(maxsize=16)

@@ -114,6 +114,8 @@ class Imperfections:
     pinion_pitch, gear_pitch
         By the body's index, cumulative pitch deviation (teeth,) along the pitch circle, positive where a
         tooth stands ahead as the body turns.
+    outwards : (pinions,)
+        Place of the pinion's bearings outwards along its axis; 0 if None.
     """
 
     error: Array
@@ -127,6 +129,16 @@ class Imperfections:
     series: dict[int, Harmonics] = field(default_factory=dict)
     pinion_pitch: dict[int, Array] = field(default_factory=dict)
     gear_pitch: dict[int, Array] = field(default_factory=dict)
+    outwards: Array = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        if self.outwards is None:
+            object.__setattr__(self, "outwards", np.zeros(len(self.position)))
+
+    @property
+    def positions(self) -> Array:
+        """x, y and z of the pinions' bearings, (pinions, 3)."""
+        return np.column_stack([self.position, self.outwards])
 
     @property
     def any_slow(self) -> bool:

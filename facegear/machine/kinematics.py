@@ -14,6 +14,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
 from facegear.machine.layout import DOF_PER_BODY, Kinematics, Layout
+from facegear.machine.mesh_frames import FlankFrame
 
 
 @dataclass(frozen=True)
@@ -29,13 +30,15 @@ class PrintedKinematics:
     follows_rotation: bool = False
 
     def require(self, layout: Layout) -> None:
-        """Accept any radii, as the printed equation does.
+        """Accept any radii of spur teeth, as the printed equation does, and refuse all other teeth.
 
         Parameters
         ----------
         layout : Layout
             The layout to check.
         """
+        if layout.kind is not None:
+            raise InvalidInput("transmission.mesh_kinematics", self.name, f"{GEOMETRIC.name}, {OTHER_TEETH}")
 
     def arm(self, radius: float, pressure_angle: float) -> float:
         """Return the torque over the mesh force that balances it: the radius times the cosine of the pressure
@@ -127,6 +130,8 @@ PRINTED_KINEMATICS = PrintedKinematics()
 """The only object of its class."""
 
 
+OTHER_TEETH = "where teeth are not spur teeth at right angles"
+"""Condition of two refusals."""
 SAME_ARM = 1e-9
 """Relative difference of radii that counts as none."""
 
@@ -142,13 +147,19 @@ class Teeth:
     follows_rotation: bool = True
 
     def require(self, layout: Layout) -> None:
-        """Raise InvalidInput unless gear radius / pinion radius = gear teeth / pinion teeth, to 1e-9.
+        """Raise InvalidInput unless gear radius / pinion radius = gear teeth / pinion teeth, to 1e-9, and
+        unless the pinion's radius is the arm of teeth that are not spur teeth at right angles.
 
         Parameters
         ----------
         layout : Layout
             The layout to check.
         """
+        if layout.kind is not None:
+            arm = layout.kind.normal_arms[0]
+            if abs(layout.pinion_radius - arm) > SAME_ARM * arm:
+                requirement = f"{arm:.9g} m, the arm of the drive flank's force, {OTHER_TEETH}"
+                raise InvalidInput("pinion_radius", layout.pinion_radius, requirement)
         conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
         if abs(layout.gear_radius - conjugate) > SAME_ARM * conjugate:
             requirement = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
@@ -172,10 +183,10 @@ class Teeth:
         return radius
 
     def mesh_radius(self, layout: Layout) -> float:
-        """Return the distance of the meshes from the face gears' axis: gear base radius / cos(pressure
-        angle).
+        """Return the distance of the meshes from the face gears' axis: the transverse module times the gear's
+        tooth number over 2.
 
-        It equals the tooth module times the gear's tooth number over 2.
+        Of spur teeth that is the gear's base radius / cos(pressure angle).
 
         Parameters
         ----------
@@ -187,6 +198,8 @@ class Teeth:
         float
             m.
         """
+        if layout.kind is not None:
+            return layout.kind.pitch_radius * layout.gear_teeth / layout.pinion_teeth
         return layout.gear_radius / float(np.cos(layout.pressure_angle))
 
     def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
@@ -207,10 +220,12 @@ class Teeth:
         return base_radius
 
     def flank_rows(self, layout: Layout) -> Array:
-        """Return the derivative of the flanks' deflections by the degrees of freedom, from `mesh_parts`.
+        """Return the derivative of the flanks' deflections by the degrees of freedom, from `flank_frames`.
 
-        A drive flank has the separating plus the tangential part, a back flank the separating less the
-        tangential part.
+        A force along the normal of a flank and its moment about the centre of a body are the derivative of
+        the flank's deflection by the motion and the turn of the body. A pinion sees the lower gear as the
+        upper one rotated by 180 degrees about its axis. Gears turn positively as the pinions drive them, and
+        share one axial direction.
 
         Parameters
         ----------
@@ -220,58 +235,65 @@ class Teeth:
         Returns
         -------
         (2 meshes, dof) array
-            Drive flanks first; m/m, and m/rad for rotations. Positive motion along a row compresses the
-            flank.
+            Drive flanks first; m/m, and m/rad for rotations and tilts. Positive motion along a row
+            compresses the flank.
         """
-        tangential, separating_part = mesh_parts(layout)
-        return np.concatenate([separating_part + tangential, separating_part - tangential])
+        rows = np.zeros((2, len(layout.meshes), layout.dof))
+        for mesh, (i, g) in enumerate(layout.meshes):
+            for row, frame in zip(rows[:, mesh], layout.flank_frames[g], strict=True):
+                pinion = DOF_PER_BODY * i
+                row[pinion : pinion + 3] = frame.normal
+                row[pinion + 3] = layout.pinion_arm * frame.arm
+                _add_gear(row, layout, frame, (i, g))
+        return np.concatenate([rows[0], rows[1]])
 
 
 GEOMETRIC = Teeth()
 """The only object of its class."""
 
 
-def mesh_parts(layout: Layout) -> tuple[Array, Array]:
-    """Return the tangential and the separating part of the flanks' deflections by the degrees of freedom.
+def _add_gear(row: Array, layout: Layout, frame: FlankFrame, mesh: tuple[int, int]) -> None:
+    """Add to the row (dof,) of a flank the derivatives by the motions of its gear, in place.
 
-    Both are along the flank normal: the tangential part holds cos(pressure angle), the separating part
-    sin(pressure angle). A pinion's x is tangential to the face gear and its y along the gear's axis. A
-    pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion axis, so its x and
-    y change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+    mesh: numbers of its pinion and gear.
+    """
+    pinion, g = mesh
+    along = np.array([np.cos(layout.angles[pinion]), np.sin(layout.angles[pinion])])
+    away = np.array([along[1], -along[0]])
+    gear = DOF_PER_BODY * (len(layout.pinions) + g)
+    across, height, outwards = frame.gear_normal
+    row[gear : gear + 2] = -(across * along + outwards * away)
+    row[gear + 2] = -height
+    row[gear + 3] = -layout.gear_arm * frame.arm
+    if g in layout.first_tilts:
+        below = getattr(layout.gears[g].body.tilt, "below", 0.0)
+        row[layout.first_tilts[g] : layout.first_tilts[g] + 2] = tilt_row(layout, frame, mesh, below)
+
+
+def tilt_row(layout: Layout, frame: FlankFrame, mesh: tuple[int, int], below: float) -> Array:
+    """Return the derivative of the deflection of a flank by tilts of its gear about x and y.
 
     Parameters
     ----------
     layout : Layout
         The layout.
+    frame : FlankFrame
+        Line of contact of the flank.
+    mesh : tuple of int
+        Numbers of its pinion and gear.
+    below : float
+        Distance of the point about which the gear tilts from the pitch plane, away from the pinions, m.
 
     Returns
     -------
-    pair of (meshes, dof) arrays
-        Tangential part, positive as the drive flank closes, and separating part, positive as both flanks
-        close; m/m, and m/rad for rotations and tilts.
+    (2,) array
+        m/rad.
     """
-    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    tangential, separating_part = np.zeros((2, len(layout.meshes), layout.dof))
-    angles = layout.angles
-    tilt_coordinates = layout.first_tilts
-    for row, (i, g) in enumerate(layout.meshes):
-        side = layout.gears[g].sign
-        along = np.array([np.cos(angles[i]), np.sin(angles[i])])
-        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-        tangential[row, pinion] = side * cosine
-        tangential[row, gear : gear + 2] = -side * cosine * along
-        tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
-        separating_part[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
-        if g in tilt_coordinates:
-            # Tilts about x and y lift the rim at the mesh by its distance from the diameter, and move it
-            # along the tangent where they are about a point below the pitch plane.
-            away = np.array([along[1], -along[0]])
-            below = getattr(layout.gears[g].body.tilt, "below", 0.0)
-            tangential[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] -= below * cosine * away
-            separating_part[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] = (
-                side * sine * layout.mesh_radius * along
-            )
-    return tangential, separating_part
+    pinion, gear = mesh
+    along = np.array([np.cos(layout.angles[pinion]), np.sin(layout.angles[pinion])])
+    away = np.array([along[1], -along[0]])
+    about_tangent, _, about_outwards = frame.gear_moment(layout.gears[gear].sign * below)
+    return -(about_tangent * along + about_outwards * away)
 
 
 KINEMATICS: Mapping[str, Kinematics] = {

@@ -9,6 +9,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
+from facegear.machine.mesh_frames import FlankFrame, ToothKind, spur_frames
 
 DOF_PER_BODY = 4
 """Coordinates of each body: x, y, z and rotation about its own axis."""
@@ -203,8 +204,9 @@ class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
-    `kinematics` says what `pinion_radius` and `gear_radius` are. Properties are computed once; their
-    arrays are shared and must not be changed.
+    `kinematics` says what `pinion_radius` and `gear_radius` are. `kind` describes teeth other than spur teeth
+    at right angles; `pressure_angle` is that of their drive flank in the normal section. Properties are
+    computed once; their arrays are shared and must not be changed.
     """
 
     pinions: tuple[Pinion, ...]
@@ -215,6 +217,7 @@ class Layout:
     pinion_radius: float
     gear_radius: float
     kinematics: Kinematics
+    kind: ToothKind | None = None
 
     def __post_init__(self) -> None:
         if not self.pinions:
@@ -228,13 +231,15 @@ class Layout:
 
     @cached_property
     def pinion_arm(self) -> float:
-        """Torque on a pinion over the mesh force that balances it, m: the base radius, as teeth have it."""
+        """Torque on a pinion over the force of its drive flank that balances it, m: the base radius of spur
+        teeth.
+        """
         return self.kinematics.arm(self.pinion_radius, self.pressure_angle)
 
     @cached_property
     def gear_arm(self) -> float:
-        """Torque on a face gear over the mesh force that balances it, m: the base radius, as teeth have
-        it.
+        """Torque on a face gear over the force of a drive flank that balances it, m: the base radius of spur
+        teeth.
         """
         return self.kinematics.arm(self.gear_radius, self.pressure_angle)
 
@@ -242,6 +247,56 @@ class Layout:
     def mesh_radius(self) -> float:
         """Distance of the meshes from the face gears' axis, m: m N2 / 2, as teeth have it."""
         return self.kinematics.mesh_radius(self)
+
+    @cached_property
+    def pitch_radius(self) -> float:
+        """Pitch radius of the pinions, m."""
+        if self.kind is not None:
+            return self.kind.pitch_radius
+        return self.pinion_arm / float(np.cos(self.pressure_angle))
+
+    @cached_property
+    def pitch_slope(self) -> float:
+        """Way along the drive flank's normal by an arc on the pitch circles of pinion or gear: the cosine of
+        the pressure angle times that of the helix.
+        """
+        return float(
+            np.cos(self.pressure_angle) if self.kind is None else self.pinion_arm / self.pitch_radius
+        )
+
+    @cached_property
+    def flank_frames(self) -> tuple[tuple[FlankFrame, FlankFrame], ...]:
+        """Lines of contact of drive and back flank, by the number of the gear."""
+        if self.kind is not None:
+            return tuple(self.kind.frames(gear.sign) for gear in self.gears)
+        return tuple(spur_frames(gear.sign, self.pressure_angle, self.mesh_radius) for gear in self.gears)
+
+    @cached_property
+    def back_arm(self) -> float:
+        """Torque on a pinion over the force of its back flank, over that of its drive flank: 1 where both
+        flanks have one pressure angle.
+        """
+        return -self.flank_frames[0][1].arm
+
+    def mesh_torques(self, forces: Array) -> Array:
+        """Return the torque that forces of the meshes put on the pinions.
+
+        Parameters
+        ----------
+        forces : (...) array
+            Forces of drive flanks, and negative ones of back flanks, N.
+
+        Returns
+        -------
+        (...) array
+            N m, of the sign of the force.
+        """
+        return np.asarray(forces * (self.pinion_arm * np.where(forces < 0.0, self.back_arm, 1.0)))
+
+    @cached_property
+    def pinion_middle(self) -> float:
+        """Place of the middles of the pinions' faces along their axes, m; of spur teeth at the meshes."""
+        return self.mesh_radius if self.kind is None else self.kind.family.middle
 
     @cached_property
     def base_pitch(self) -> float:
@@ -256,10 +311,10 @@ class Layout:
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
 
     def tilt_distance(self, gear: int) -> float:
-        """Return the distance along the gear's axis from the pinions' axes to the point about which a
-        gear tilts.
+        """Return the distance along the gear's axis, towards the gear, from where the pinions' axes pass it
+        to the point about which the gear tilts.
 
-        It is the pinion's pitch radius plus `Tilt.below`.
+        It is the height of the pitch plane, the pinion's pitch radius at right angles, plus `Tilt.below`.
 
         Parameters
         ----------
@@ -272,8 +327,8 @@ class Layout:
             m.
         """
         tilt = self.gears[gear].body.tilt
-        pitch_radius = self.pinion_arm / float(np.cos(self.pressure_angle))
-        return pitch_radius + (0.0 if tilt is None else tilt.below)
+        height = self.pitch_radius if self.kind is None else self.kind.pitch_height(self.gears[gear].sign)
+        return height + (0.0 if tilt is None else tilt.below)
 
     @cached_property
     def first_tilts(self) -> dict[int, int]:
@@ -388,50 +443,3 @@ class Layout:
         if side not in sides:
             raise KeyError(side)
         return sides.index(side) * len(self.pinions) + pinion
-
-
-class PhaseConvention(StrEnum):
-    """Phase of meshes with the lower of two gears: `geometric` adds half a turn of the pinion for every
-    pinion, `printed` for the first pinion only, as equation (11) has it.
-    """
-
-    GEOMETRIC = "geometric"
-    AS_PRINTED = "printed"
-
-
-def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | None = None) -> Array:
-    """Return the lag of each mesh behind the reference.
-
-    The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's
-    teeth pass the pinions in the order of their angles, counted from the first pinion: equation (7). The
-    other side of a pinion is half a turn of it away, and turned by `clocking`. Where the lower gear is alone
-    its teeth come round the other way. Equation (13) as printed knows no sense of rotation.
-
-    Parameters
-    ----------
-    layout : Layout
-        Bodies and mesh geometry.
-    convention : PhaseConvention
-        For which pinions the half turn counts.
-    clocking : (pinions,) array or None
-        Lower rim ahead of the upper, pitches; 0 if None.
-
-    Returns
-    -------
-    (meshes,) array
-        Mesh periods within [0, 1).
-    """
-    upper_first = (
-        any(gear.side is Side.UPPER for gear in layout.gears) or not layout.kinematics.follows_rotation
-    )
-    rim_clocking = np.zeros(len(layout.pinions)) if clocking is None else clocking
-    lags = layout.pitches_from_first * (1.0 if upper_first else -1.0)
-    phases = np.empty(len(layout.meshes))
-    for row, (i, g) in enumerate(layout.meshes):
-        lag = lags[i]
-        if layout.half_turned(g):
-            if convention is PhaseConvention.GEOMETRIC or i == 0:
-                lag += 0.5 * layout.pinion_teeth
-            lag -= rim_clocking[i]
-        phases[row] = np.mod(lag, 1.0)
-    return phases

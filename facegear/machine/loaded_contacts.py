@@ -176,7 +176,8 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     linear = machine.static_machine.linear
     if linear.rings.body.size or has_rolling_bearings(machine.drive_line) or not machine.constant_stiffness:
         return None
-    scale = 1.0 / np.sqrt(linear.mass.diagonal())
+    masses = linear.mass.diagonal()
+    scale = np.where(masses > 0.0, 1.0 / np.sqrt(np.where(masses > 0.0, masses, 1.0)), 1.0 / linear.lengths)
     jacobian = linear.rows * scale
     bearing = linear.stiffness * np.outer(scale, scale)
     loads = linear.loads * scale

@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.arrays import Array, Mask
 from facegear.machine.elastic_gears import ElasticGears
-from facegear.machine.linear_model import LinearModel
+from facegear.machine.linear_model import LinearModel, massive_motions
 from facegear.machine.loaded_contacts import (
     Contact,
     LoadedContacts,
@@ -114,7 +114,8 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
 def machine_in_motion(machine: Machine) -> Machine:
     """Return the machine as it moves: with a coordinate attached to each mesh whose two flanks both press.
 
-    The coordinate couples the flanks by the compliance of the gear that its modes leave out.
+    The coordinate couples the flanks by the compliance of the gear that its modes leave out. Motions of a
+    casing without mass are no coordinates of their own.
 
     Parameters
     ----------
@@ -132,6 +133,8 @@ def machine_in_motion(machine: Machine) -> Machine:
     NotConverged
         Where its equilibrium is not found.
     """
+    if machine.casing is not None and massive_motions(machine.linear) is not None:
+        machine = replace(machine, casing=replace(machine.casing, is_condensed=True))
     bodies = machine.bodies
     if not isinstance(bodies, ElasticGears) or not machine.layout.kinematics.flanks_apart or bodies.attached:
         return machine

@@ -11,6 +11,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.by_content import kept_by_content
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
+from facegear.machine.casing import Casing
 from facegear.machine.disturbances import (
     Excitation,
     MeshFriction,
@@ -20,15 +21,14 @@ from facegear.machine.disturbances import (
 )
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.imperfections import Imperfections, perfect
-from facegear.machine.layout import Layout, PhaseConvention, Role, mesh_phases
+from facegear.machine.layout import Layout
 from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 from facegear.machine.supports import add_tangents
+from facegear.machine.torques import require_balance
 from facegear.meshing.force_table import ForceTable
 from facegear.meshing.law import MeshLaw
 from facegear.number_format import count_noun
-
-TORQUE_BALANCE = 1e-9
-"""Sum of all tangential forces, over the sum of their sizes, up to which torques count as balanced."""
 
 
 class OpenFlanks(StrEnum):
@@ -117,6 +117,8 @@ class Machine:
         `loaded_modes.machine_in_motion` has attached coordinates for the rest.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
+    casing
+        Casing that gives way below bearings; None for seats that stand still.
     directions
         Function that turns the forces of the meshes away from the normals of the ideal contact; none by
         default.
@@ -140,6 +142,7 @@ class Machine:
     bodies: Bodies | None = None
     softening: Array | None = None
     drive_line: DriveLine | None = None
+    casing: Casing | None = None
     directions: Bodies | None = None
     excitations: tuple[Excitation, ...] = ()
 
@@ -148,6 +151,8 @@ class Machine:
             object.__setattr__(self, "imperfections", perfect(self.layout))
         if self.forces is None:
             object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
+        if self.casing is not None and self.casing.layout is not self.layout:
+            object.__setattr__(self, "casing", replace(self.casing, layout=self.layout))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
         for quantity, values in (
@@ -173,11 +178,14 @@ class Machine:
 
     @cached_property
     def linear_without_rolling(self) -> LinearModel:
-        """Linear model without rolling bearings: `lumped_model`, then drive line, `bodies` (gears that bend)
-        and `directions`, each if given, whose coordinates stand behind the layout's.
+        """Linear model without rolling bearings: `lumped_model`, extended by the drive line, then by the
+        casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates
+        are the layout's.
         """
-        model = self.lumped_model
-        for add_part in (self.drive_line, self.bodies, self.directions):
+        model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
+        if self.casing is not None:
+            model = self.casing(model, self.drive_line)
+        for add_part in (self.bodies, self.directions):
             model = model if add_part is None else add_part(model)
         return model
 
@@ -196,10 +204,10 @@ class Machine:
         """Machine without backlash, constant errors, runouts, pitch deviations and errors of single
         teeth.
 
-        Stiffness factors, clocking and the series e(t) of single meshes stay. Bearing clearances become 1
-        m where they are positive, which only marks the bearing, and stay 0 elsewhere. Machines that
-        differ in these errors alone share one object, so that results which do not depend on them are
-        cached once.
+        Stiffness factors, clocking, the series e(t) of single meshes and the places of pinions along their
+        axes stay. Bearing clearances become 1 m where they are positive, which only marks the bearing, and
+        stay 0 elsewhere. Machines that differ in these errors alone share one object, so that results which
+        do not depend on them are cached once.
         """
         imperfections, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
         return _machine_without_errors(
@@ -208,6 +216,7 @@ class Machine:
             imperfections.clocking,
             imperfections.series,
             imperfections.bearing_clearance > 0.0,
+            imperfections.outwards,
         )
 
     @cached_property
@@ -216,7 +225,7 @@ class Machine:
         with it from those without it; else this machine.
         """
         line = self.drive_line
-        if line is None or not line.static_from_layout(self.lumped_model):
+        if line is None or self.casing is not None or not line.static_from_layout(self.lumped_model):
             return self
         return replace(self, drive_line=None)
 
@@ -334,13 +343,14 @@ def _machine_without_errors(
     clocking: Array,
     series: dict[int, Harmonics],
     with_clearance: Mask,
+    outwards: Array,
 ) -> Machine:
     """Return the machine with given fields, without backlash, constant and slow errors; equal arguments
     share it.
 
     `rest` holds the values of the fields `_WITHOUT_ERRORS`, in that order; stiffness (meshes,) are
     factors; clocking (pinions,), pitches; series: e(t) of single meshes by index; with_clearance
-    (pinions,): bearings that get a clearance of 1 m.
+    (pinions,): bearings that get a clearance of 1 m; outwards (pinions,): their places, m.
     """
     field_values = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
     flaws = replace(
@@ -349,6 +359,7 @@ def _machine_without_errors(
         clocking=clocking,
         series=series,
         bearing_clearance=np.where(with_clearance, 1.0, 0.0),
+        outwards=outwards,
     )
     return Machine(**field_values, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
 
@@ -369,79 +380,3 @@ def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
         Hz.
     """
     return layout.pinion_teeth * speed_rpm / 60.0
-
-
-def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array:
-    """Return the torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers have none.
-
-    Parameters
-    ----------
-    layout : Layout
-        Roles of the pinions.
-    per_input : float
-        Torque on each input pinion, N m.
-    tail_share : float
-        Torque of all tail pinions together, as a fraction of the sum of the input torques.
-
-    Returns
-    -------
-    (pinions,) array
-        N m.
-    """
-    roles = [pinion.role for pinion in layout.pinions]
-    inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
-    each_tail = -tail_share * inputs * per_input / tails if tails else 0.0
-    value = {Role.INPUT: per_input, Role.TAIL: each_tail, Role.IDLER: 0.0}
-    return np.array([value[role] for role in roles])
-
-
-def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0.0) -> Array:
-    """Return the torques on all bodies with the output face gear in static balance.
-
-    Parameters
-    ----------
-    layout : Layout
-        Bodies and mesh geometry.
-    on_pinions : (pinions,) array
-        Torques on the pinions, N m.
-    on_other_gear : float
-        Torque on the face gear that is not the output, where there are two, N m.
-
-    Returns
-    -------
-    (bodies,) array
-        N m.
-    """
-    on_gears = np.full(len(layout.gears), float(on_other_gear))
-    on_gears[layout.output] = 0.0
-    on_gears[layout.output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius - on_gears.sum()
-    return np.concatenate([on_pinions, on_gears])
-
-
-def require_balance(layout: Layout, torques: Array) -> None:
-    """Raise InvalidInput unless the torques are in balance for the rigid rotation of all bodies.
-
-    Each torque over its body's radius is a force at the mesh; the sum of these forces must vanish.
-
-    Parameters
-    ----------
-    layout : Layout
-        Bodies and mesh geometry.
-    torques : (bodies,) array
-        Torques on all bodies, pinions first, N m, positive in the body's positive sense of rotation.
-
-    Raises
-    ------
-    InvalidInput
-        If the size of the sum is above TORQUE_BALANCE times the sum of the sizes of these forces.
-    """
-    pinions = len(layout.pinions)
-    tangential = np.concatenate(
-        [torques[:pinions] / layout.pinion_radius, torques[pinions:] / layout.gear_radius]
-    )
-    excess = float(tangential.sum())
-    if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
-        requirement = (
-            "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
-        )
-        raise InvalidInput("torques", f"{excess:.6g} N in excess at the mesh", requirement)

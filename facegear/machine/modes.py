@@ -15,8 +15,9 @@ import scipy.linalg
 
 from facegear.arrays import AnyArray, Array
 from facegear.errors import NotConverged
+from facegear.machine.casing_coordinates import CASING, CASING_MODE
 from facegear.machine.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
-from facegear.machine.linear_model import LinearModel
+from facegear.machine.linear_model import LinearModel, massive_motions
 
 EQUAL = 1e-8
 """Difference of neighbouring frequencies, over the largest of all, up to which they count as equal."""
@@ -81,7 +82,11 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
     stiffness = linear.stiffness + meshes
     if linear.spin is not None and speed != 0.0:
         return _turning(linear, stiffness, speed)
-    if linear.masses is None:
+    if (motions := massive_motions(linear)) is not None:
+        mass = motions.T @ linear.mass @ motions
+        omega_squared, shapes = scipy.linalg.eigh(motions.T @ stiffness @ motions, mass)
+        shapes = motions @ shapes
+    elif linear.masses is None:
         omega_squared, shapes = scipy.linalg.eigh(stiffness, linear.mass)
     else:
         root = np.sqrt(linear.masses)
@@ -150,12 +155,15 @@ AMPLITUDE_FRACTION = 0.01
 
 
 class ModeClass(StrEnum):
-    """Classes of modes of section 3.1 of the source paper, by which bodies have the kinetic energy."""
+    """Classes of modes of section 3.1 of the source paper, by which bodies have the kinetic energy, and those
+    of a casing.
+    """
 
     RIGID = "rigid body"
     PINION = "pinion"
     GEAR = "face gear"
     PINION_AND_GEAR = "pinion coupled face gear"
+    CASING = "casing"
 
 
 @dataclass(frozen=True)
@@ -204,8 +212,11 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
     energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
     pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
     pinion_fraction = float(energy[pinions].sum() / energy.sum())
+    is_casing = np.array([label.startswith(f"{CASING}:") for label in linear.labels])
     if frequency == 0.0:
         mode_class = ModeClass.RIGID
+    elif energy[is_casing].sum() >= CASING_MODE * energy.sum():
+        mode_class = ModeClass.CASING
     elif pinion_fraction >= 1.0 - ENERGY_FRACTION:
         mode_class = ModeClass.PINION
     elif pinion_fraction <= ENERGY_FRACTION:
@@ -226,7 +237,7 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
     Coordinates with more than AMPLITUDE_FRACTION of the largest count; roles of pinions with the same
     motion share an entry.
     """
-    letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
+    letters_of_body: dict[str, set[str]] = {name: set() for name in (*layout.body_names, CASING)}
     for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
         body, _, letter = label.rpartition(":")
         letters_of_body[body].add(letter)
@@ -237,7 +248,8 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
             parts.setdefault(motion, []).append(role.value)
     if motion := _motion(set().union(*(letters_of_body[gear.name] for gear in layout.gears))):
         parts.setdefault(f"{motion} ", []).append("face gear")
-    return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
+    symbols = [f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items()]
+    return "; ".join([*symbols, CASING] if letters_of_body[CASING] else symbols)
 
 
 def _motion(moves: set[str]) -> str:

@@ -176,7 +176,7 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     layout = machine.layout
     mesh_forces = static_equilibrium(at_rest(machine)).forces
     forces = np.where(np.abs(mesh_forces) > ROUNDING * np.abs(mesh_forces).max(), mesh_forces, 0.0)
-    torque = forces * layout.pinion_arm
+    torque = layout.mesh_torques(forces)
     flank = np.select([forces > 0.0, forces < 0.0], ["drive", "back"], "open")
     return pd.DataFrame(
         {

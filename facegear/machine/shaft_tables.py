@@ -9,10 +9,11 @@ import scipy.linalg
 
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft
+from facegear.machine.casing_coordinates import casing_motion
 from facegear.machine.drive_line import DriveLine, TurningMass
 from facegear.machine.machine import Machine
 from facegear.machine.rolling_equilibria import ShaftLoads
-from facegear.machine.statics import Equilibria, bearing_forces
+from facegear.machine.statics import Equilibria, bearing_forces, bearing_loads
 from facegear.parts.shafts import Shaft, deflections
 
 
@@ -41,6 +42,7 @@ def shaft_bearing_loads(
     forces: Array,
     moments: Mapping[int, Array] | None = None,
     shafts: Mapping[int, ShaftLoads] | None = None,
+    strains: Array | None = None,
 ) -> Array:
     """Return the loads of the shafts on their bearings, from the balance of each elastic shaft.
 
@@ -57,6 +59,8 @@ def shaft_bearing_loads(
         out.
     shafts : mapping of int to ShaftLoads, or None
         Shafts on rolling bearings at the same K equilibria by the numbers of pinions.
+    strains : (K, bearings, 5) array or None
+        Loads from seats that strain a shaft, as `ring_strains` returns them; None for seats that stand still.
 
     Returns
     -------
@@ -70,7 +74,57 @@ def shaft_bearing_loads(
             continue
         about = (moments or {}).get(pinion, np.zeros((len(forces), 2)))
         loads.append(seat.bearing_loads(np.concatenate([forces[:, pinion], about], axis=1)))
-    return np.concatenate(loads, axis=1)
+    whole = np.concatenate(loads, axis=1)
+    return whole if strains is None else whole + strains
+
+
+def ring_strains(machine: Machine, displacements: Array) -> Array | None:
+    """Return the loads of shafts on their bearings that come from the motions of seats against each other.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, n) array
+        Displacements of all of its coordinates, m and rad.
+
+    Returns
+    -------
+    (K, bearings, 5) array or None
+        N and N m, in the order of `bearing_names`; None for a machine without casing or shafts.
+    """
+    if machine.casing is None or machine.drive_line is None:
+        return None
+    return machine.casing.strain_loads(machine.drive_line, casing_motion(machine.linear, displacements))
+
+
+def tilting_moments(machine: Machine, at_rest: Equilibria) -> dict[int, Array]:
+    """Return the moments by which meshes tilt pinions on their shafts.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    at_rest : Equilibria
+        Its equilibria at K positions.
+
+    Returns
+    -------
+    dict of int to (K, 2) array
+        Moments about x and y by the numbers of the pinions that tilt, N m; empty for spur teeth at right
+        angles, which tilt no pinion.
+    """
+    line = machine.drive_line
+    if line is None or machine.layout.kind is None:
+        return {}
+    loads = bearing_loads(machine.linear_without_rolling, at_rest.displacements, at_rest.on_shafts)
+    return {pinion: loads[:, line.tilts(pinion)] for pinion in line.tilting}
+
+
+def _pinion_loads(machine: Machine, at_rest: Equilibria, pinion: int) -> Array:
+    """Return force and moment (5,) of a pinion on its shaft at the first equilibrium, N and N m."""
+    moments = tilting_moments(machine, at_rest).get(pinion, np.zeros((1, 2)))
+    return np.append(bearing_forces(machine, at_rest)[0, pinion], moments[0])
 
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
@@ -118,13 +172,15 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
         One row a pinion with a shaft: stiffness without moments along x, y, z, N/m, and displacement under
         the mean torques: x_um, y_um, z_um, tilt_x_urad, tilt_y_urad.
     """
-    forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, seat in sorted(line.seats.items()):
         square = 1.0 / np.diagonal(seat.shaft.compliance)[:3]
-        displacement = seat.shaft.compliance[:, :3] @ forces[pinion]
+        displacement = seat.shaft.compliance @ _pinion_loads(machine, at_rest, pinion)
         if pinion in at_rest.shafts:
             displacement = at_rest.shafts[pinion].pinion[0]
+        elif machine.casing is not None:
+            motion = casing_motion(machine.linear, at_rest.displacements[0])
+            displacement = displacement + machine.casing.base_motions(pinion) @ motion
         rows.append((line.layout.pinions[pinion].name, *square, *(1e6 * displacement)))
     stiffness = [f"stiffness_{axis}_n_per_m" for axis in "xyz"]
     return pd.DataFrame(
@@ -135,7 +191,7 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 def deflection_table(
     machine: Machine, line: DriveLine, at_rest: Equilibria, shafts: Mapping[int, Shaft | RollingShaft]
 ) -> pd.DataFrame:
-    """Return the deflection along each shaft under the mean torques.
+    """Return the deflection along each shaft under the mean torques, on a casing against its seats.
 
     Parameters
     ----------
@@ -153,7 +209,6 @@ def deflection_table(
     pd.DataFrame
         Rows along each shaft: pinion, at_mm from its beginning, x_um and y_um.
     """
-    forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, shaft in sorted(shafts.items()):
         at = _stations(shaft)
@@ -161,7 +216,7 @@ def deflection_table(
             loads = at_rest.shafts[pinion]
             displacements = shaft.deflections(loads.pinion[0], loads.forces[0], at)[:, :2]
         else:
-            displacements = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
+            displacements = deflections(shaft, at)[:, :2] @ _pinion_loads(machine, at_rest, pinion)
         name = line.layout.pinions[pinion].name
         rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * displacements]).tolist()]
     return pd.DataFrame(rows, columns=["pinion", "at_mm", "x_um", "y_um"])
@@ -196,7 +251,9 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
     pd.DataFrame
         One row a bearing: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
     """
-    loads = shaft_bearing_loads(line, bearing_forces(machine, at_rest), shafts=at_rest.shafts)[0]
+    forces, moments = bearing_forces(machine, at_rest), tilting_moments(machine, at_rest)
+    strains = ring_strains(machine, at_rest.displacements)
+    loads = shaft_bearing_loads(line, forces, moments, at_rest.shafts, strains)[0]
     rows = [
         (line.layout.pinions[pinion].name, letter, *load, np.hypot(*load[:2]))
         for (pinion, letter), load in zip(bearing_names(line), loads, strict=True)

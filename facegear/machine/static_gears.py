@@ -39,6 +39,8 @@ def at_rest(machine: Machine) -> Machine:
         Its gears are StaticGears if they were ElasticGears.
     """
     machine = machine.static_machine
+    if machine.casing is not None:
+        machine = replace(machine, casing=machine.casing.without_modes())
     if not isinstance(machine.bodies, ElasticGears):
         return machine
     with_slopes = machine.directions is not None

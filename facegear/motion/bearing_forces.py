@@ -9,9 +9,9 @@ import pandas as pd
 from facegear.arrays import Array, Integers, Mask
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads, tilting_moments
 from facegear.machine.static_gears import at_rest
-from facegear.machine.statics import static_bearing_forces
+from facegear.machine.statics import mean_equilibrium, static_bearing_forces
 from facegear.motion.integrator.reduction import Reduction
 from facegear.motion.steady_state.response import SteadyState
 from facegear.motion.steady_state.simulate import Model
@@ -163,7 +163,11 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     moments = {i: motion.along(*_force_matrices(linear, reduction, line.tilts(i))).T for i in line.tilting}
     if linear.tangent_loads is not None:
         moments = {i: about - linear.tangent_loads[line.tilts(i)] for i, about in moments.items()}
-    return shaft_bearing_loads(line, forces, moments)
+    strains = None
+    if model.machine.casing is not None:
+        displacements = motion.along(reduction.basis.T, np.zeros_like(reduction.basis.T)).T
+        strains = ring_strains(model.machine, displacements)
+    return shaft_bearing_loads(line, forces, moments, strains=strains)
 
 
 def velocities(response: SteadyState) -> Array:
@@ -203,15 +207,20 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         between the samples; `ac_rms_interval_n`: 95 % half-width, 0 for a periodic motion.
     """
     machine = model.machine
-    history, static_forces = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]
+    history, machine_at_rest = bearing_history(model, response), at_rest(machine)
+    static_forces = static_bearing_forces(machine_at_rest)[None]
     bodies = list(machine.layout.body_names)
     if (line := machine.drive_line) is not None:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
-        static_forces = np.concatenate(
-            [static_forces, shaft_bearing_loads(line, static_forces)[..., :3]], axis=1
-        )
+        strains, about = None, None
+        if machine.casing is not None or machine.layout.kind is not None:
+            still = mean_equilibrium(machine_at_rest)
+            strains = ring_strains(machine_at_rest, still.displacements)
+            about = tilting_moments(machine_at_rest, still)
+        static_loads = shaft_bearing_loads(line, static_forces, about, strains=strains)
+        static_forces = np.concatenate([static_forces, static_loads[..., :3]], axis=1)
     dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
     statistics = moments(
         dynamic_forces.reshape(len(dynamic_forces), -1), response.per_period, response.period > 0

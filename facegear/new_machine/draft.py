@@ -3,7 +3,7 @@
 from copy import deepcopy
 from functools import cached_property
 from importlib.resources import files
-from math import cbrt, ceil, cos, pi, radians, sin, sqrt
+from math import ceil, cos, pi, radians, sin, sqrt
 from pathlib import Path
 from string import Template
 from tempfile import TemporaryDirectory
@@ -20,8 +20,9 @@ from facegear.errors import FacegearError
 from facegear.harmonics import Harmonics
 from facegear.machine.machine import Machine
 from facegear.new_machine.bearings import STIFF, Bearings, round_stiffness
+from facegear.new_machine.grades import cumulative_pitch_um, position_um
 from facegear.new_machine.teeth import MORE_SHAPER_TEETH, choose_teeth, chosen_keys
-from facegear.new_machine.wishes import RADIAL, TORQUE_MARGINS, MachineWishes
+from facegear.new_machine.wishes import RADIAL, TORQUE_MARGINS, MachineWishes, smallest_root
 from facegear.number_format import count_noun
 from facegear.schema.contact import Mesh
 from facegear.schema.yaml_file import read_yaml
@@ -50,6 +51,13 @@ PROFILE_CUTS = 3
 """Cuts across the profile where the lightest torque asks for no more: the default of contact.refinement."""
 MOST_CUTS = 32
 """Largest number of cuts that contact.refinement takes."""
+KIND_VALUES = {
+    "helix_angle_deg": 0.0,
+    "taper_angle_deg": 0.0,
+    "shaft_angle_deg": 90.0,
+    "offset_mm": 0.0,
+}
+"""Keys that a config has only where they differ from these values of spur teeth."""
 MATERIAL = Material(206e9, 0.3)
 """Steel."""
 
@@ -62,13 +70,13 @@ class Draft:
         self.more_shaper_teeth = more_shaper_teeth
         self.teeth = choose_teeth(wishes.teeth, more_shaper_teeth)
         design, module = self.teeth.design, wishes.module_mm
-        root = 1e3 * design.pinion_root_radius
+        root = 1e3 * smallest_root(design)
         self.values = chosen_keys(self.teeth)
         self.values["rim_thickness_mm"] = round(RIM * module, 4)
         self.values["pinion_bore_radius_mm"] = round(min(BORE * root, root - LEFT_ABOVE_BORE * module), 4)
         self._take("rim_thickness_mm", "pinion_bore_radius_mm", "pinion_width_mm")
         self.inner, self.outer = self.values["inner_radius_mm"], self.values["outer_radius_mm"]
-        radius = 0.5 * module * wishes.pinion_teeth
+        radius = 1e3 * design.pinion_pitch_radius
         pinion = _ring(radius, self.values["pinion_bore_radius_mm"], self.values["pinion_width_mm"])
         gear = _ring(self.outer, self.inner, self.values["rim_thickness_mm"] + 2.25 * module)
         self.values |= {"pinion_mass_kg": _short(pinion[0]), "gear_mass_kg": _short(gear[0])}
@@ -90,7 +98,7 @@ class Draft:
         The mass is the effective one of pinion and gear along the line of action, the stiffness the
         estimated one.
         """
-        base = self.teeth.design.pinion_base_radius
+        base = self.teeth.design.normal_arm
         ratio = self.wishes.face_gear_teeth / self.wishes.pinion_teeth
         mass = 1.0 / (base**2 / self.pinion_inertia + (base * ratio) ** 2 / self.gear_inertia)
         return 2.0 * DAMPING_RATIO * sqrt(self.stiffness * mass)
@@ -198,7 +206,9 @@ class Draft:
             pinion_teeth=wishes.pinion_teeth,
             face_gear_teeth=wishes.face_gear_teeth,
             module_mm=f"{wishes.module_mm:.10g}",
-            pressure_angle_deg=f"{wishes.pressure_angle_deg:.10g}",
+            pressure_angle_deg=self._pressure_angles(),
+            kind=self._kind(),
+            middle=self._middle(),
             torques=", ".join(f"{torque:g}" for torque in torques),
             refinement=self._refinement(torques[0]),
             positions=positions,
@@ -219,6 +229,29 @@ class Draft:
             load_sharing=self._load_sharing(cycles, points),
             slow=f"{max(SPEEDS[0] * wishes.speed_rpm, 1.0):.6g}",
             fast=f"{SPEEDS[1] * wishes.speed_rpm:.6g}",
+        )
+
+    def _pressure_angles(self) -> str:
+        """Return the pressure angles as text of the config: one number, or one for each flank."""
+        drive, coast = self.wishes.pressure_angle_deg, self.wishes.coast_pressure_angle_deg
+        if coast in (None, drive):
+            return f"{drive:.10g}"
+        return f"{{drive: {drive:.10g}, coast: {coast:.10g}}}"
+
+    def _kind(self) -> str:
+        """Return the keys that make teeth other than spur ones as text of the config, each on its line."""
+        values = {name: getattr(self.wishes, name) for name in KIND_VALUES}
+        return "".join(
+            f"  {name}: {value:.10g}\n" for name, value in values.items() if value != KIND_VALUES[name]
+        )
+
+    def _middle(self) -> str:
+        """Return the key of the pinion's middle as text of the config; empty for spur teeth."""
+        middle = self.values.get("pinion_middle_mm")
+        return (
+            ""
+            if middle is None
+            else f"    middle_mm: {middle:.10g} # chosen: above the middle of the gear's face\n"
         )
 
     def _load_sharing(self, cycles: int, points: int) -> str:
@@ -254,7 +287,7 @@ class Draft:
 
     def _gear_pitch_radius(self) -> float:
         """Return the pitch radius of the face gear, m."""
-        return 0.5e-3 * self.wishes.module_mm * self.wishes.face_gear_teeth
+        return self.teeth.design.family.gear_pitch_radius
 
     def _bearing(self, radial: float) -> str:
         """Return a bearing with this radial stiffness, N/m, as text of the config."""
@@ -282,7 +315,7 @@ class Draft:
             return ""
         away = position_um(self._gear_pitch_radius())
         lines = ["  single_pinions: # chosen: bores inside grade IT5, runouts of ISO 1328-1 grade 5\n"]
-        diameter = self.wishes.module_mm * self.wishes.pinion_teeth
+        diameter = 2e3 * self.teeth.design.pinion_pitch_radius
         for number, (name, role) in enumerate(_pinion_roles(self.wishes)):
             angle = GOLDEN_DEG * number % 360.0
             x, y = away * cos(radians(angle)), away * sin(radians(angle))
@@ -305,7 +338,8 @@ class Draft:
     def _reasons(self) -> dict[str, str]:
         """Return the reason of each chosen value of the config by its name; `given` for a user's wish."""
         low, high = (1e3 * radius for radius in self.teeth.face_limits)
-        face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
+        limits = "undercut and pointed tips" if self.teeth.design.is_spur else "the limits of both flanks"
+        face = f"chosen within {low:.4g} to {high:.4g} mm, between {limits}"
         soft = "; soft bearings let the inputs share between both gears" if self.wishes.idlers else ""
         reasons = {
             "pinion_width_mm": "chosen: a module wider than the gear's face at either end",
@@ -330,40 +364,6 @@ class Draft:
             "pinion": f"chosen: a steel ring{soft}",
             "gear": f"chosen: a steel rim, bearings {STIFF:g} times as stiff as a mesh",
         }
-
-
-def cumulative_pitch_um(diameter_mm: float, module_mm: float) -> float:
-    """Total cumulative pitch deviation F_p, um, that ISO 1328-1:2013 allows in grade 5.
-
-    Parameters
-    ----------
-    diameter_mm, module_mm : float
-        Pitch diameter and module, mm.
-
-    Returns
-    -------
-    float
-        Deviation, um.
-    """
-    return 0.002 * diameter_mm + 0.55 * sqrt(diameter_mm) + 0.7 * module_mm + 12.0
-
-
-def position_um(radius: float) -> float:
-    """Distance, um, by which a bearing is out of place: half of the tolerance IT5 of ISO 286-1 for its
-    radius.
-
-    Parameters
-    ----------
-    radius : float
-        Distance of the bearing from the gears' axis, m.
-
-    Returns
-    -------
-    float
-        Distance from its place, um.
-    """
-    size = 1e3 * radius
-    return 0.5 * 7.0 * (0.45 * cbrt(size) + 0.001 * size)
 
 
 def _ring(outer_mm: float, inner_mm: float, width_mm: float) -> tuple[float, float]:

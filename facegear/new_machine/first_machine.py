@@ -21,7 +21,7 @@ from facegear.new_machine.bearings import (
     split_of,
 )
 from facegear.new_machine.draft import SPEEDS, STIFFNESS, Draft
-from facegear.new_machine.teeth import MORE_SHAPER_TEETH, choose_teeth
+from facegear.new_machine.teeth import MORE_SHAPER_TEETH, choose_teeth, is_spur
 from facegear.new_machine.wishes import RADIAL, MachineWishes, require_room, require_wishes
 from facegear.number_format import count_noun, format_number
 from facegear.schema.base import parse
@@ -30,6 +30,7 @@ from facegear.strength.root_form import contact_ratio_factor
 from facegear.strength.safety import hertz_stress, permissible_bending, pinion_form, standard_bending
 from facegear.teeth.analysis import path_curvatures
 from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_numbers import flank_numbers
 
 RESONANCES = 3
 """Number of resonances that are printed."""
@@ -60,13 +61,7 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
         One line of text for each estimate, with units.
     """
     wishes = draft.wishes
-    ratio = wishes.face_gear_teeth / wishes.pinion_teeth
-    power = wishes.pinions * wishes.torque_n_m * wishes.speed_rpm * pi / 30e3
-    yield (
-        f"ratio {_text(ratio)}, {_text(power)} kW from {count_noun(wishes.pinions, 'input')}, "
-        f"mesh frequency {_text(wishes.pinion_teeth * wishes.speed_rpm / 60)} Hz, "
-        f"contact ratio {draft.teeth.analysis.contact_ratio:.3g}"
-    )
+    yield _power_line(draft)
     if wishes.idlers:
         low, high = split.idlers
         # A single idler shares its load with none.
@@ -86,6 +81,50 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     if safeties.spare < 1.0:
         yield _poor_safety(draft, mesh_torque, safeties)
     yield _resonances(draft, bearings)
+
+
+def other_teeth_lines(draft: Draft, mesh_torque: float) -> Iterator[str]:
+    """Yield lines of what is known of a machine whose teeth are not spur: power, forces, limits of the face.
+
+    Parameters
+    ----------
+    draft : Draft
+        The machine without bearings.
+    mesh_torque : float
+        Torque on the pinion by the most loaded mesh, N m.
+
+    Returns
+    -------
+    iterator of str
+        One line of text for each, with units.
+    """
+    design = draft.teeth.design
+    yield _power_line(draft)
+    for name, numbers in flank_numbers(design).items():
+        axial, upward = (
+            mesh_torque * numbers[f"{part}_force_per_torque_per_m"] for part in ("axial", "separating")
+        )
+        yield (
+            f"{name} flank: contact ratio {numbers['contact_ratio']:.3g}, face from "
+            f"{numbers['inner_limit_mm']:.4g} mm ({numbers['inner_cause']}); "
+            f"at {_text(mesh_torque)} N m a mesh {_text(axial)} N outwards along the pinion's axis, "
+            f"{_text(upward)} N away from the gear"
+        )
+    yield (
+        "not estimated for teeth that are not spur: load sharing, safety and resonances; bearings are stiff"
+    )
+
+
+def _power_line(draft: Draft) -> str:
+    """Return the line with ratio, power, mesh frequency and contact ratio."""
+    wishes = draft.wishes
+    ratio = wishes.face_gear_teeth / wishes.pinion_teeth
+    power = wishes.pinions * wishes.torque_n_m * wishes.speed_rpm * pi / 30e3
+    return (
+        f"ratio {_text(ratio)}, {_text(power)} kW from {count_noun(wishes.pinions, 'input')}, "
+        f"mesh frequency {_text(wishes.pinion_teeth * wishes.speed_rpm / 60)} Hz, "
+        f"contact ratio {draft.teeth.analysis.contact_ratio:.3g}"
+    )
 
 
 def _poor_split(draft: Draft, bearings: Bearings) -> str:
@@ -297,6 +336,11 @@ def first_machine(wishes: MachineWishes) -> FirstMachine:
     """
     require_wishes(wishes)
     require_room(wishes, choose_teeth(wishes.teeth).design)
+    if not is_spur(wishes):
+        draft, loads = Draft(wishes), _torques_at_rest(wishes)
+        return FirstMachine(
+            draft.text(draft.stiff_bearings(), loads), tuple(other_teeth_lines(draft, loads[1]))
+        )
     best = _machine(Draft(wishes))
     if wishes.shaper_teeth is None:
         for more_shaper_teeth in MORE_SHAPER_TEETH[1:]:
@@ -328,6 +372,17 @@ class _Machine:
         """
         safeties = estimate_safeties(self.draft, self.loads[1])
         return safeties.spare, safeties.spare_pitting
+
+
+def _torques_at_rest(wishes: MachineWishes) -> tuple[float, float]:
+    """Return the smallest and largest torque on a pinion by a mesh (N m) if paths share their load evenly: an
+    input between two gears gives half of it to each, and idlers lead on what the lower gear gets.
+    """
+    if not wishes.idlers:
+        return wishes.torque_n_m, wishes.torque_n_m
+    half = 0.5 * wishes.torque_n_m
+    torques = half, half * wishes.pinions / wishes.idlers
+    return min(torques), max(torques)
 
 
 def _machine(draft: Draft) -> _Machine:

@@ -4,10 +4,11 @@ from dataclasses import dataclass, fields
 from math import atan, degrees, floor, pi
 
 from facegear.build.checks import STEEL, STRAIN_REASON, tooth_limit
+from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
 from facegear.schema.base import Section
 from facegear.schema.bodies import BearingStiffness, GearBody, PinionBody
-from facegear.schema.tooth_pair import FaceGearSection, PinionSection, ShaperSection
+from facegear.schema.tooth_pair import FaceGearSection, FlankAngles, PinionSection, ShaperSection
 from facegear.schema.transmission import MAX_PINIONS, DampingSection
 from facegear.teeth.design import PairDesign
 
@@ -23,6 +24,11 @@ class ToothWishes:
     face_gear_teeth: int
     module_mm: float
     pressure_angle_deg: float = 25.0
+    coast_pressure_angle_deg: float | None = None
+    helix_angle_deg: float = 0.0
+    taper_angle_deg: float = 0.0
+    shaft_angle_deg: float = 90.0
+    offset_mm: float = 0.0
     profile_shift_modules: float | None = None
     pinion_addendum_modules: float | None = None
     pinion_dedendum_modules: float | None = None
@@ -88,6 +94,11 @@ LEAST_SPRING = 1.0
 SPRING = (BearingStiffness, "x")
 """Key of every bearing stiffness; the other axes have the same limits."""
 FIELDS: dict[str, tuple[type[Section], str]] = {
+    "helix_angle_deg": (ToothPair, "helix_angle_deg"),
+    "taper_angle_deg": (ToothPair, "taper_angle_deg"),
+    "shaft_angle_deg": (ToothPair, "shaft_angle_deg"),
+    "offset_mm": (ToothPair, "offset_mm"),
+    "coast_pressure_angle_deg": (FlankAngles, "coast"),
     "profile_shift_modules": (PinionSection, "profile_shift_modules"),
     "pinion_addendum_modules": (PinionSection, "addendum_modules"),
     "pinion_dedendum_modules": (PinionSection, "dedendum_modules"),
@@ -110,7 +121,7 @@ FIELDS: dict[str, tuple[type[Section], str]] = {
     "axial_bearing_n_per_m": SPRING,
     "mesh_damping_n_s_per_m": (DampingSection, "mesh_n_s_per_m"),
 }
-"""Section and key of the config that each optional wish becomes."""
+"""Section and key of the config whose limits each optional wish has."""
 
 
 RADIAL = ("input_bearing_n_per_m", "idler_bearing_n_per_m", "gear_bearing_n_per_m")
@@ -169,17 +180,33 @@ def require_room(wishes: MachineWishes, design: PairDesign) -> None:
         raise ConfigError(
             "torque_n_m", wishes.torque_n_m, f"at most {largest:.4g} for these teeth: {STRAIN_REASON}"
         )
-    bore, root = wishes.pinion_bore_radius_mm, 1e3 * design.pinion_root_radius
+    bore, root = wishes.pinion_bore_radius_mm, 1e3 * smallest_root(design)
     if bore is not None and bore >= root:
         raise ConfigError("pinion_bore_radius_mm", bore, f"less than the root radius, {root:.4g}")
     width = design.pinion.width if wishes.pinion_width_mm is None else 1e-3 * wishes.pinion_width_mm
-    inner_end = design.mean_radius - 0.5 * width
+    inner_end = design.middle - 0.5 * width
     pinion_angle = 2.0 * atan(design.pinion_tip_radius / inner_end) if inner_end > 0.0 else pi
     count, largest_count = wishes.pinions + wishes.idlers, max(floor(2.0 * pi / pinion_angle), 1)
     if count > largest_count:
         key, value = ("pinions", wishes.pinions) if not wishes.idlers else ("pinions and idlers", count)
         pinion_text = f"each of which takes {degrees(pinion_angle):.4g} deg"
         raise ConfigError(key, value, f"at most {largest_count} round this gear, {pinion_text}")
+
+
+def smallest_root(design: PairDesign) -> float:
+    """Return the root radius of the pinion where it is smallest: of a tapered one at an end of its face.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    return design.pinion_root_radius - 0.5 * design.pinion.width * abs(design.family.taper)
 
 
 def _limits(section: type[Section], key: str) -> tuple[float, float]:

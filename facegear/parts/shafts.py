@@ -271,6 +271,44 @@ def condense_shaft(shaft: Shaft) -> CondensedShaft:
     return CondensedShaft(_symmetric(_motion_at(shaft, shaft.pinion, reactions, rigid_motion)), reactions)
 
 
+@dataclass(frozen=True, eq=False)
+class SeatedShaft:
+    """Shaft on bearings whose outer rings move, condensed to its pinion; SI units.
+
+    Attributes
+    ----------
+    motion : (5, 5 bearings)
+        Motion of the pinion's middle by the motions of the rings, with no load on it.
+    strain : (5 bearings, 5 bearings)
+        Loads that hold the rings at their motions, with no load on the pinion. Rigid motions have none.
+    """
+
+    motion: Array
+    strain: Array
+
+
+def follow_rings(shaft: Shaft) -> SeatedShaft:
+    """Compute how a shaft follows the outer rings of its bearings.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        The shaft.
+
+    Returns
+    -------
+    SeatedShaft
+        SI units.
+    """
+    count = len(shaft.bearings)
+    springs = np.array([bearing.stiffness for bearing in shaft.bearings])
+    strained, rigid_motion = _solve_rings(shaft)
+    compliance = clamped_compliance(shaft.segments, shaft.material, _load_positions(shaft))[0, 1:]
+    reactions = np.einsum("bij,bjk->bik", springs, strained.reshape(count, MOTIONS, -1))
+    motion = carry_motion(shaft.pinion) @ rigid_motion - np.einsum("bij,bjk->ik", compliance, reactions)
+    return SeatedShaft(motion, _symmetric(-reactions.reshape(MOTIONS * count, -1)))
+
+
 def deflections(shaft: Shaft, at: AnyArray) -> Array:
     """Return the motions of a shaft on its bearings, along its length, by unit loads of its pinion.
 
@@ -298,6 +336,35 @@ def _solve_balance(shaft: Shaft) -> tuple[Array, Array]:
     (columns). The second, (5, 5), is the rigid motion at the shaft's beginning. One linear system holds
     the motion of each bearing and the balance of all loads.
     """
+    count = len(shaft.bearings)
+    system, compliance, rigid = _balance_system(shaft)
+    bearings = slice(0, MOTIONS * count)
+    load = np.zeros((len(system), MOTIONS))
+    load[bearings], load[MOTIONS * count :] = _flat(compliance[1:, :1]), rigid[0].T
+    solution = np.linalg.solve(system, load)
+    springs = np.array([bearing.stiffness for bearing in shaft.bearings])
+    reactions = springs @ solution[bearings].reshape(count, MOTIONS, MOTIONS)
+    return np.asarray(reactions), np.asarray(solution[MOTIONS * count :])
+
+
+def _solve_rings(shaft: Shaft) -> tuple[Array, Array]:
+    """Return what a shaft without load does by unit motions of its outer rings, all bearings in a row.
+
+    The first, (5 bearings, 5 bearings), are motions of the shaft against each ring; the second, (5, 5
+    bearings), is the rigid motion at the shaft's beginning.
+    """
+    motions = MOTIONS * len(shaft.bearings)
+    system, _, _ = _balance_system(shaft)
+    load = np.zeros((len(system), motions))
+    load[:motions] = -np.eye(motions)
+    solution = np.linalg.solve(system, load)
+    return np.asarray(solution[:motions]), np.asarray(solution[motions:])
+
+
+def _balance_system(shaft: Shaft) -> tuple[Array, Array, Array]:
+    """Return the linear system of `_solve_balance`, with the compliance of the clamped shaft between pinion
+    and bearings (1 + bearings, 1 + bearings, 5, 5), and their rigid motions (1 + bearings, 5, 5).
+    """
     at = _load_positions(shaft)
     compliance = clamped_compliance(shaft.segments, shaft.material, at)
     count = len(shaft.bearings)
@@ -305,15 +372,12 @@ def _solve_balance(shaft: Shaft) -> tuple[Array, Array]:
     rigid = np.array([carry_motion(position) for position in at])
     bearings = slice(0, MOTIONS * count)
     size = MOTIONS * (count + 1)
-    system, load = np.zeros((size, size)), np.zeros((size, MOTIONS))
+    system = np.zeros((size, size))
     system[bearings, bearings] = _flat(np.einsum("ijkl,jlm->ijkm", compliance[1:, 1:], springs))
     system[bearings, bearings] += np.eye(MOTIONS * count)
     system[bearings, MOTIONS * count :] = -_flat(rigid[1:, None])
     system[MOTIONS * count :, bearings] = _flat((rigid[1:].transpose(0, 2, 1) @ springs)[None])
-    load[bearings], load[MOTIONS * count :] = _flat(compliance[1:, :1]), rigid[0].T
-    solution = np.linalg.solve(system, load)
-    reactions = springs @ solution[bearings].reshape(count, MOTIONS, MOTIONS)
-    return np.asarray(reactions), np.asarray(solution[MOTIONS * count :])
+    return system, compliance, rigid
 
 
 def _motion_at(shaft: Shaft, position: float, reactions: Array, rigid_motion: Array) -> Array:

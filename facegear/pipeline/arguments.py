@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, get_args, get_type_hints
 
 from facegear.build.notes import turns
+from facegear.build.tooth_numbers import machine_teeth
 from facegear.build.tooth_pair import contact_setup
 from facegear.pipeline.conditions import (
     BODIES,
@@ -53,6 +54,22 @@ def _section_of(kind: Any, value: Any) -> Any:
             if hasattr(candidate, "of_config"):
                 return candidate.of_config(value)
     return value
+
+
+def teeth_of_machine(case: Case) -> Any:
+    """Return what a machine depends on of section `tooth_pair`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Any
+        Plain values, see `machine_teeth`.
+    """
+    return machine_teeth(case.values["tooth_pair"])
 
 
 def load_sharing_options(case: Case) -> Any:

@@ -8,11 +8,12 @@ from pathlib import Path
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
 from facegear.build.plans import contact_plan
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair, pair_design
 from facegear.contact.analysis import met_contacts
-from facegear.contact.gear_flank import from_arrays
+from facegear.contact.gear_flank import every_flank_from_arrays
 from facegear.errors import ConfigError, extras_named, require_choice
 from facegear.io.tables import write_workbook
 from facegear.machine.poses.displaced_pair import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
@@ -205,7 +206,7 @@ def loaded_displaced_contact(
     """
     plan = replace(contact_plan(contact), root_stress=False)
     requests = [(flank.design, tuple(torques)) for flank in flanks.values()]
-    teeth, compliances = pair(tooth_pair), (from_arrays(bodies[0]), from_arrays(bodies[1]))
+    teeth, compliances = pair(tooth_pair), list(zip(*map(every_flank_from_arrays, bodies), strict=True))
     solutions = list(met_contacts(teeth.design, teeth.materials, compliances, plan, requests))
     tables = {
         name: pd.concat(

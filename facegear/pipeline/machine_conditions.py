@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from facegear.build.casing import has_casing
 from facegear.build.elastic_bodies import any_elastic
 from facegear.build.machine_layout import has_groups, split_kinds
 from facegear.build.notes import turns
@@ -59,6 +60,42 @@ def elastic_gears(case: Case) -> bool:
         True if so.
     """
     return any_elastic(case.values["transmission"])
+
+
+def casing(case: Case) -> bool:
+    """Whether the machine stands on a casing.
+
+    It does where section `transmission` has a section `casing`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return has_casing(case.values["transmission"])
+
+
+def casing_sensors(case: Case) -> bool:
+    """Whether the casing of the machine has sensors.
+
+    They are listed in `transmission.casing.sensors`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return casing(case) and bool(case.values["transmission"]["casing"]["sensors"])
 
 
 def solid_pair(case: Case) -> Any:

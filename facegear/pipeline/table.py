@@ -71,9 +71,8 @@ def _made_where(stage: Stage, is_source: bool) -> str:
 
 def _sections(need: Need) -> list[str]:
     """Return the top sections of the config from which a need takes its value."""
-    if isinstance(need, ComputedValue):
-        return list(need.sections)
-    return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]
+    keys = need.sections if isinstance(need, ComputedValue) else (need,) if isinstance(need, str) else need
+    return [key.partition(".")[0] for key in keys]
 
 
 def _files(stage: Stage) -> str:

@@ -1,6 +1,6 @@
 """Data of both gears as on a drawing, and numbers of the machine at rest."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import cos, degrees, hypot, pi, sin, tan
 from typing import Any
 
@@ -26,6 +26,8 @@ def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
     DataFrame
         Columns quantity, pinion, face gear, unit, all text; blank where a gear has no such quantity.
     """
+    if not has_spur_teeth(pair["design_si"]):
+        return _table([*kind_rows(pair), *_common_rows(pair)])
     design, radii = pair["design_si"], pair["radii_mm"]
     pinion, gear, shaper = design["pinion"], design["face_gear"], design["shaper"]
     module = 1e3 * design["module"]
@@ -33,7 +35,6 @@ def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
     axis = radii["pinion_pitch"] + shift
     span_teeth, span = pinion_span(pair)
     middle = _mm(0.5 * (radii["gear_inner"] + radii["gear_outer"]))
-    backlash = f"{pair['backlash_um']['smallest']:.1f}"
     path = radii["gear_contact_path_nominal"]
     rows = [
         ("Teeth", f"{pinion['teeth']}", f"{gear['teeth']}", ""),
@@ -52,13 +53,37 @@ def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
             "mm",
         ),
         (f"Span over {span_teeth} teeth", _mm(span), "", "mm"),
-        ("Face width", _mm(1e3 * pinion["width"]), _mm(radii["gear_outer"] - radii["gear_inner"]), "mm"),
-        ("Inner diameter of the face", "", _mm(2 * radii["gear_inner"]), "mm"),
-        ("Outer diameter of the face", "", _mm(2 * radii["gear_outer"]), "mm"),
+        *_face_rows(pair),
         ("Middle of the face from the gear's axis", middle, middle, "mm"),
         ("Pinion axis to pitch plane", "", _mm(axis), "mm"),
         ("Pinion axis to tip plane", "", _mm(axis - 1e3 * gear["addendum"]), "mm"),
         ("Pinion axis to root plane", "", _mm(axis + 1e3 * shaper["addendum"]), "mm"),
+        *_common_rows(pair),
+    ]
+    return _table(rows)
+
+
+def _table(rows: list[tuple[str, str, str, str]]) -> pd.DataFrame:
+    """Return rows of quantity, pinion, face gear and unit as a table."""
+    return pd.DataFrame(rows, columns=["quantity", "pinion", "face gear", "unit"])
+
+
+def _face_rows(pair: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Return the rows on the width and the ends of both faces."""
+    radii, width = pair["radii_mm"], 1e3 * pair["design_si"]["pinion"]["width"]
+    return [
+        ("Face width", _mm(width), _mm(radii["gear_outer"] - radii["gear_inner"]), "mm"),
+        ("Inner diameter of the face", "", _mm(2 * radii["gear_inner"]), "mm"),
+        ("Outer diameter of the face", "", _mm(2 * radii["gear_outer"]), "mm"),
+    ]
+
+
+def _common_rows(pair: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Return the last rows, which teeth of all kinds share: rim, tool, chamfer, bore, backlash."""
+    design = pair["design_si"]
+    pinion, gear, shaper = design["pinion"], design["face_gear"], design["shaper"]
+    backlash = f"{pair['backlash_um']['smallest']:.1f}"
+    return [
         ("Rim below the root", "", _mm(1e3 * gear["rim_thickness"]), "mm"),
         ("Teeth of the shaper", "", f"{shaper['teeth']}", ""),
         ("Tip rounding of the shaper", "", _mm(1e3 * shaper["tip_rounding"]), "mm"),
@@ -66,7 +91,122 @@ def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
         ("Bore diameter", _mm(2e3 * pinion["bore_radius"]), "", "mm"),
         ("Backlash along the line of action, as assembled", backlash, backlash, "µm"),
     ]
-    return pd.DataFrame(rows, columns=["quantity", "pinion", "face gear", "unit"])
+
+
+def has_spur_teeth(design: Mapping[str, Any]) -> bool:
+    """Whether a design has spur teeth alone, like on both flanks, at 90 degrees and without offset.
+
+    Parameters
+    ----------
+    design : mapping
+        Entry `design_si` of the record of the tooth geometry.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    angles = (design["helix_angle"], design["taper_angle"], design["offset"])
+    coast = design["coast_pressure_angle"] in (None, design["pressure_angle"])
+    return angles == (0.0, 0.0, 0.0) and design["shaft_angle"] == pi / 2 and coast
+
+
+def kind_rows(pair: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """List the data of helical, tapered, offset or asymmetric teeth, up to the rim.
+
+    Parameters
+    ----------
+    pair : mapping
+        Record of the tooth geometry (`geometry/pair.json`).
+
+    Returns
+    -------
+    list of tuple
+        Texts quantity, pinion, face gear and unit. A quantity that both flanks have in common has one row,
+        else each flank has one. Three numbers are those at the inner end, the middle and the outer end.
+    """
+    design, blanks, flanks = pair["design_si"], pair["blanks"], pair["flanks"]
+    pinion, module, helix = design["pinion"], 1e3 * design["module"], degrees(design["helix_angle"])
+    hand = f", {'right' if helix > 0 else 'left'} hand" if helix else ""
+    shaft, offset = f"{degrees(design['shaft_angle']):.4g}", _mm(1e3 * design["offset"])
+    pitch, gear_pitch = (_mm(2 * radius) for radius in blanks["pitch_radii_mm"])
+    span = blanks["span"]
+    span_rows = [(f"Span over {span[0]} teeth", _mm(span[1]), "", "mm")] if span else []
+    return [
+        ("Teeth", f"{pinion['teeth']}", f"{design['face_gear']['teeth']}", ""),
+        ("Normal module", _mm(module), _mm(module), "mm"),
+        ("Transverse module", *2 * (_mm(blanks["transverse_module_mm"]),), "mm"),
+        (f"Helix angle{hand}", f"{abs(helix):.5g}", "", "deg"),
+        ("Taper angle, positive outwards", f"{degrees(design['taper_angle']):.5g}", "", "deg"),
+        ("Shaft angle", shaft, shaft, "deg"),
+        ("Offset of the axes", offset, offset, "mm"),
+        (
+            "Profile shift coefficient in the middle",
+            f"{1e3 * pinion['profile_shift'] / module + 0.0:.4f}",
+            "",
+            "",
+        ),
+        ("Pitch diameter", pitch, gear_pitch, "mm"),
+        ("Tip diameter", _series(blanks["pinion_tip_radii_mm"], 2.0), "", "mm"),
+        *_flank_rows(flanks, "Normal pressure angle", "pressure_angle_deg", "{:.5g}", "deg", on_gear=True),
+        *_flank_rows(flanks, "Transverse pressure angle", "transverse_pressure_angle_deg", "{:.5g}", "deg"),
+        *_flank_rows(flanks, "Base helix angle", "base_helix_deg", "{:.5g}", "deg"),
+        *_flank_rows(flanks, "Base diameter", "base_radius_mm", f"{{:.{DECIMALS}f}}", "mm", 2.0),
+        *_flank_rows(flanks, "Form diameter", "form_radii_mm", f"{{:.{DECIMALS}f}}", "mm", 2.0),
+        ("Transverse tooth thickness at the pitch diameter", _mm(blanks["tooth_thickness_mm"]), "", "mm"),
+        *span_rows,
+        *_face_rows(pair),
+        ("Middle of the face along the pinion's axis", _mm(blanks["middle_mm"]), "", "mm"),
+        ("Half angle of the tip surface", "", f"{blanks['tip_cone_deg']:.5g}", "deg"),
+        ("Tip below the common perpendicular", "", _series(blanks["tip_heights_mm"], -1.0), "mm"),
+        ("Root below the common perpendicular", "", _series(blanks["root_heights_mm"], -1.0), "mm"),
+        *_flank_rows(flanks, "Contact ratio", "contact_ratio", "{:.4f}", "", on_gear=True),
+        *_flank_rows(
+            flanks, "Sliding at first, middle and last contact", "sliding_mm_per_rad", "{:.4g}", "mm/rad"
+        ),
+        *_flank_rows(
+            flanks, "Axial force for 1 N m, outwards", "axial_force_per_torque_per_m", "{:.4f}", "N"
+        ),
+        *_flank_rows(
+            flanks, "Separating force for 1 N m", "separating_force_per_torque_per_m", "{:.4f}", "N"
+        ),
+        *_flank_rows(flanks, "Mesh phase by axial way", "phase_deg_per_mm", "{:.4f}", "deg/mm"),
+        ("Backlash by axial way", f"{blanks['backlash_um_per_mm']:.3f}", "", "µm/mm"),
+    ]
+
+
+def _series(numbers: Sequence[float], factor: float = 1.0) -> str:
+    """Return lengths (mm) times a factor as one text, or one length where all are equal."""
+    texts = [_mm(factor * number) for number in numbers]
+    return texts[0] if len(set(texts)) == 1 else " / ".join(texts)
+
+
+def _flank_rows(
+    flanks: Mapping[str, Mapping[str, Any]],
+    quantity: str,
+    key: str,
+    style: str,
+    unit: str,
+    factor: float = 1.0,
+    on_gear: bool = False,
+) -> list[tuple[str, str, str, str]]:
+    """Return the rows of a quantity of the pinion's flanks, or of both gears' (`on_gear`): one if drive and
+    coast read the same, else one for each.
+    """
+    texts = {}
+    for name in ("drive", "coast"):
+        numbers = flanks[name].get(key)
+        if numbers is None:
+            texts[name] = "none"
+            continue
+        numbers = numbers if isinstance(numbers, list) else [numbers]
+        parts = [style.format(factor * number + 0.0) for number in numbers]
+        texts[name] = parts[0] if len(set(parts)) == 1 else " / ".join(parts)
+    if texts["drive"] == texts["coast"]:
+        return [(quantity, texts["drive"], texts["drive"] if on_gear else "", unit)]
+    return [
+        (f"{quantity}, {name} flank", text, text if on_gear else "", unit) for name, text in texts.items()
+    ]
 
 
 def pinion_tooth_thickness(pair: Mapping[str, Any]) -> float:

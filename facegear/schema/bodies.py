@@ -143,6 +143,7 @@ class Position(Section):
 
     x: float = Field(0.0, ge=-5000, le=5000, description="as the upper gear's teeth move")
     y: float = Field(0.0, ge=-5000, le=5000, description="towards the upper gear")
+    z: float = Field(0.0, ge=-5000, le=5000, description="outwards along the pinion's axis")
 
 
 class PinionForce(Section):

@@ -14,7 +14,10 @@ PAIR = "tooth_pair."
 """Beginning of the keys of the tooth pair."""
 LUBRICATION = "lubrication."
 """Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
-TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+TEETH = (
+    *("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg"),
+    *("helix_angle_deg", "taper_angle_deg", "shaft_angle_deg", "offset_mm"),
+)
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = (
     "assembly",
@@ -28,7 +31,7 @@ WITHOUT_MESHING = tuple(f"{PAIR}{key}" for key in (*GAPS, *MODULI))
 """Keys of the tooth pair that may change without a body being meshed and factorised again."""
 SHARED_SECTIONS = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshes": None}
 """Sections of single parts, each with the section that all parts of the kind share."""
-START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
+START = {"position_um": {"x": 0.0, "y": 0.0, "z": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
 """Values of a part without an entry of its own where the shared section says nothing."""
 ONE_SIDE, DIAMETRAL = "clearance_um", "clearance_diametral_um"
 """Two ways in which a config gives the clearance of pinions; the second number is twice the first."""

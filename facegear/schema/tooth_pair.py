@@ -1,10 +1,63 @@
 """The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
 
+from collections.abc import Mapping
+from typing import Annotated, Any
+
 from pydantic import Field
 
 from facegear.schema.base import Section
 from facegear.schema.flanks import FlanksSection
 from facegear.schema.gear_body import MaterialSection
+
+PressureAngle = Annotated[float, Field(ge=10, le=40)]
+"""Normal pressure angle of a flank, deg."""
+
+
+class FlankAngles(Section):
+    """Normal pressure angles of two unlike flanks."""
+
+    drive: PressureAngle = Field(description="of the pinion's right flank, which drives towards +x")
+    coast: PressureAngle = Field(description="of the pinion's left flank")
+
+
+def flank_angles_deg(angles: "float | FlankAngles | Mapping[str, float]") -> tuple[float, float]:
+    """Return the pressure angles of both flanks from any form in which the key gives them.
+
+    Parameters
+    ----------
+    angles : float, FlankAngles or mapping
+        Value of `tooth_pair.pressure_angle_deg`, deg: one number for both flanks, or one for each, as a
+        section or as plain values.
+
+    Returns
+    -------
+    tuple of float
+        Angles of drive and coast flank, deg.
+    """
+    if isinstance(angles, FlankAngles):
+        return angles.drive, angles.coast
+    if isinstance(angles, Mapping):
+        return angles["drive"], angles["coast"]
+    return angles, angles
+
+
+def face_middle_mm(tooth_pair: Mapping[str, Any]) -> float | None:
+    """Return the place of the middle of the pinion's face along its axis.
+
+    Parameters
+    ----------
+    tooth_pair : mapping
+        Plain values of section `tooth_pair`.
+
+    Returns
+    -------
+    float or None
+        Key `pinion.middle_mm`, else the mean radius of the gear's face, mm; None for a pair without bodies.
+    """
+    pinion, gear = tooth_pair["pinion"], tooth_pair["face_gear"]
+    if pinion is not None and pinion["middle_mm"] is not None:
+        return float(pinion["middle_mm"])
+    return None if gear is None else float(0.5 * (gear["inner_radius_mm"] + gear["outer_radius_mm"]))
 
 
 class ReliefSection(Section):
@@ -23,9 +76,16 @@ class ReliefSection(Section):
 
 
 class PinionSection(Section):
-    """Spur pinion cut by a rack."""
+    """Pinion cut by a rack; heights are radial, in transverse sections, and count in normal modules."""
 
     width_mm: float = Field(ge=0.01, le=2000, description="face width, along the pinion's axis")
+    middle_mm: float | None = Field(
+        default=None,
+        ge=-1e4,
+        le=1e4,
+        description="place of the middle of its face along its axis, from the common perpendicular of both "
+        "axes; null: the mean radius of the gear's face",
+    )
     addendum_modules: float = Field(
         default=1.0, ge=0.01, le=2, description="from the pitch circle to the tip circle, without shift"
     )
@@ -114,4 +174,16 @@ class AssemblySection(Section):
     shaft_angle_error_deg: float = Field(
         default=0.0, ge=-2, le=2, description="dgamma: error of the angle between the axes"
     )
-    gear_axial_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")
+    gear_axial_um: float = Field(
+        default=0.0,
+        ge=-5000,
+        le=5000,
+        description="dq: axial setting of the gear, positive away from the pinion",
+    )
+    pinion_axial_um: float = Field(
+        default=0.0,
+        ge=-5000,
+        le=5000,
+        description="w: axial setting of the pinion, positive outwards; opens the backlash where "
+        "taper_angle_deg is positive",
+    )

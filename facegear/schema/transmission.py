@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.bodies import LIKE_ALL_PINIONS, GearBody, PinionBody, SingleGear, SinglePinion
+from facegear.schema.casing import CasingSection
 from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.schema.transmission_error import TransmissionError
 
@@ -112,6 +113,9 @@ class Transmission(Section):
         {},
         description="turning masses on torsional springs, from the gear outwards, the torque on the last: by "
         "the pinions' role, a pinion's name, or output for the face gear that gives the power out",
+    )
+    casing: CasingSection | None = Field(
+        None, description="a casing by finite elements below the bearings; null: seats that stand still"
     )
     excitations: tuple[ExcitationSection, ...] = Field(
         (), max_length=50, description="periodic torques on bodies, at orders of their turns"

@@ -80,12 +80,36 @@ def even_shares(machine: Machine) -> Array:
     (meshes,) array
         Magnitude in N along the line of action, in the order of `Layout.meshes`; nan where a mesh has none.
     """
+    forces = _on_drive_flanks(machine)
+    size = np.abs(forces) / np.where(forces < 0.0, machine.layout.back_arm, 1.0)
+    return np.where(size > 0.0, size, np.nan)
+
+
+def even_torques(machine: Machine) -> Array:
+    """Compute the torque on its pinion of every mesh at the nominal even share of the load.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its layout and mean torques on pinions and gears are used.
+
+    Returns
+    -------
+    (meshes,) array
+        Magnitude in N m, in the order of `Layout.meshes`; nan where a mesh has none.
+    """
+    size = np.abs(_on_drive_flanks(machine))
+    return np.where(size > 0.0, size, np.nan) * machine.layout.pinion_arm
+
+
+def _on_drive_flanks(machine: Machine) -> Array:
+    """Return the forces (meshes,), N, of drive flanks that would put the even shares on the pinions, positive
+    where the pinion drives.
+    """
     layout = machine.layout
     pinion_torques = machine.torques[: len(layout.pinions)] / layout.pinion_arm
-    size = np.abs(
-        significant_forces(_even_forces(layout, pinion_torques, machine.torques[len(layout.pinions) :]))
-    )
-    return np.where(size > 0.0, size, np.nan)
+    on_gears = machine.torques[len(layout.pinions) :]
+    return significant_forces(_even_forces(layout, pinion_torques, on_gears))
 
 
 def _even_forces(layout: Layout, coefficients: Array, on_gears: Array) -> Array:

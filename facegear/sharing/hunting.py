@@ -12,9 +12,9 @@ from facegear.machine.drive_line import DriveLine
 from facegear.machine.flank_errors import slow_errors
 from facegear.machine.flanks import significant_forces
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads, tilting_moments
 from facegear.machine.statics import Equilibria, bearing_forces, equilibria
-from facegear.sharing.even_shares import even_shares, sharing_coefficient
+from facegear.sharing.even_shares import even_shares, even_torques, sharing_coefficient
 from facegear.sharing.groups import LoadGroup, load_groups
 
 
@@ -319,6 +319,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
     """
     layout = run.machine.layout
     names, even = layout.mesh_names, even_shares(run.machine)
+    nominal_torques = even_torques(run.machine)
     group, ratio = _group_ratios(run)
     drive, back = (flank > 0.0 for flank in np.split(run.flank_forces, 2, axis=1))
     is_open = ~drive & ~back
@@ -333,7 +334,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
                 load.min(),
                 run.largest_loads[mesh],
                 even[mesh],
-                even[mesh] * layout.pinion_arm,
+                nominal_torques[mesh],
                 run.mesh_load_factors[mesh],
                 ratio[mesh],
                 drive[:, mesh].mean(),
@@ -409,8 +410,10 @@ def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFr
     names, forces, rows = list(run.machine.layout.body_names), run.bearings, []
     if line is not None:
         names += [f"{names[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
-        on_bearings = shaft_bearing_loads(line, forces, shafts=run.at_rest.shafts)[..., :3]
-        forces = np.concatenate([forces, on_bearings], axis=1)
+        strains = ring_strains(run.machine, run.at_rest.displacements)
+        tilting = tilting_moments(run.machine, run.at_rest)
+        loads = shaft_bearing_loads(line, forces, tilting, run.at_rest.shafts, strains)
+        forces = np.concatenate([forces, loads[..., :3]], axis=1)
     for name, force in zip(names, forces.transpose(1, 0, 2), strict=True):
         radial = np.hypot(force[:, 0], force[:, 1])
         rows.append((name, *force.mean(axis=0), radial.mean(), radial.max(), np.abs(force[:, 2]).max()))

@@ -13,7 +13,8 @@ from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Kinematics, Layout, Role
-from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.machine import Machine
+from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
 from facegear.ties import size_ranks
@@ -125,7 +126,7 @@ def _may_be_hardest(base: HuntingCycle) -> Mask:
 
 def bearing_scan(machine: Machine) -> pd.DataFrame:
     """Compute K_gamma of each kind of group against the bearing stiffness of inputs or idlers, in both
-    kinematics.
+    kinematics, or in one alone for teeth that are not spur teeth at right angles.
 
     The scan takes one mesh cycle, with constant errors of meshes only. A kind whose paths have no even share
     has no K_gamma and no row.
@@ -147,6 +148,8 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
     """
     rows = []
     for name, kinematics in KINEMATICS.items():
+        if machine.layout.kind is not None and kinematics is not machine.layout.kinematics:
+            continue  # equation (13) as printed knows spur teeth alone
         base = _with_kinematics(machine, kinematics)
         for varied_pinions, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
             for stiffness in BEARINGS:
@@ -223,7 +226,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     """Return a simplified machine with other kinematics, for the bearing scan.
 
     It keeps mesh errors, backlash, stiffness and balanced torques, and loses tilt of the gears, drive
-    line and all other errors. Elastic bodies stay only if the kinematics do.
+    line and all other errors. Elastic bodies and a casing stay only if the kinematics do.
     """
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
@@ -235,12 +238,15 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
     torques = balanced_torques(new_layout, machine.torques[:pinions], float(lower))
-    # At rest a drive line is what the layout has in its place.
+    # At rest a drive line is what the layout has in its place, unless meshes tilt the pinions.
+    line = machine.drive_line
+    if line is not None:
+        line = None if layout.kind is None else replace(line, layout=new_layout)
     machine_with_layout = replace(
-        machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=None
+        machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=line
     )
     if kinematics is not layout.kinematics:
-        return replace(machine_with_layout, bodies=None, softening=None)
+        return replace(machine_with_layout, bodies=None, softening=None, casing=None)
     if isinstance(machine.bodies, ElasticGears):
         return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
     return machine_with_layout

@@ -117,9 +117,12 @@ def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: I
 def root_arrays(
     variants: Sequence[Mapping[str, RootStress]],
     flank_variant: Integers,
-    positions: Mapping[str, Array],
+    positions: Sequence[Mapping[str, Array]],
 ) -> dict[str, AnyArray]:
     """Return the root stress as ROOT_STRESS_ARRAYS.
+
+    Variants on the first one's bodies, whose gauges are the same, stand in `<body>_other_stress_pa`; those on
+    other bodies have arrays of their own, named as the first one's with `<number>_` in front.
 
     Parameters
     ----------
@@ -127,15 +130,15 @@ def root_arrays(
         Root stress of each body under each of the errors that flanks meet.
     flank_variant : (gears, flanks) array of int
         Index of the variant of each gear and flank.
-    positions : Mapping[str, array]
-        Positions of the gauges of each body, (2, a, b, 3), m.
+    positions : Sequence[Mapping[str, array]]
+        Positions of the gauges of each body, (2, a, b, 3), m, by variant.
 
     Returns
     -------
     dict[str, array]
         Arrays by name, with the shapes (...) of ROOT_STRESS_ARRAYS, in SI units.
     """
-    first, *other_variants = variants
+    first = variants[0]
     arrays: dict[str, AnyArray] = {
         "torque_n_m": next(iter(first.values())).torques,
         "flank_variant": np.asarray(flank_variant),
@@ -143,12 +146,21 @@ def root_arrays(
     for body, root in first.items():
         arrays[f"{body}_passage"] = root.passage
         arrays[f"{body}_stress_pa"] = root.stress
-        other_stress = [variant[body].stress for variant in other_variants]
+        other_stress = []
+        for number, variant in enumerate(variants[1:], 1):
+            if np.array_equal(positions[number][body], positions[0][body]):
+                other_stress.append(variant[body].stress)
+            else:
+                arrays[f"{number}_{body}_stress_pa"] = variant[body].stress
+                arrays |= _gauge_arrays(f"{number}_{body}", positions[number][body], variant[body])
         arrays[f"{body}_other_stress_pa"] = np.reshape(other_stress, (len(other_stress), *root.stress.shape))
-        arrays[f"{body}_position_m"] = positions[body]
-        arrays[f"{body}_tangent_rad"] = root.angle
-        arrays[f"{body}_error"] = root.error
+        arrays |= _gauge_arrays(body, positions[0][body], root)
     return arrays
+
+
+def _gauge_arrays(name: str, position: Array, root: RootStress) -> dict[str, AnyArray]:
+    """Return places (2, a, b, 3) m, tangents and errors of gauges as arrays of ROOT_STRESS_ARRAYS."""
+    return {f"{name}_position_m": position, f"{name}_tangent_rad": root.angle, f"{name}_error": root.error}
 
 
 def root_from_arrays(arrays: Arrays, body: str, gear: str = "upper", flank: str = "drive") -> RootStress:
@@ -170,16 +182,21 @@ def root_from_arrays(arrays: Arrays, body: str, gear: str = "upper", flank: str 
     RootStress
         Root stress over torque and passage.
     """
-    x, y, _ = np.moveaxis(arrays[f"{body}_position_m"], -1, 0)
     variant = int(arrays["flank_variant"][GEARS.index(gear), FLANKS.index(flank)])
-    stress = arrays[f"{body}_stress_pa"] if variant == 0 else arrays[f"{body}_other_stress_pa"][variant - 1]
+    has_gauges = [f"{number}_{body}_stress_pa" in arrays for number in range(variant + 1)]
+    name = f"{variant}_{body}" if has_gauges[variant] else body
+    if variant == 0 or has_gauges[variant]:
+        stress = arrays[f"{name}_stress_pa"]
+    else:
+        stress = arrays[f"{body}_other_stress_pa"][variant - 1 - sum(has_gauges)]
+    x, y, _ = np.moveaxis(arrays[f"{name}_position_m"], -1, 0)
     return RootStress(
         torques=arrays["torque_n_m"],
         passage=arrays[f"{body}_passage"],
         stress=stress,
         along=(y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)),
-        angle=arrays[f"{body}_tangent_rad"],
-        error=arrays[f"{body}_error"],
+        angle=arrays[f"{name}_tangent_rad"],
+        error=arrays[f"{name}_error"],
     )
 
 

@@ -162,7 +162,7 @@ def friction_quantities(
 
 def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
     """Return the flanks that carry a load at some time, with the torque on the pinion: force times
-    `pinion_arm`.
+    the arm of the flank.
 
     Parameters
     ----------
@@ -179,11 +179,12 @@ def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
     layout = machine.layout
     on = np.flatnonzero(loads.largest > 0.0)
     bodies = np.array(layout.meshes)[on % len(layout.meshes)]
+    arm = layout.pinion_arm * np.where(on < len(layout.meshes), 1.0, layout.back_arm)
     return MeshLoads(
         pinion=bodies[:, 0],
         gear=bodies[:, 1],
-        torque=layout.pinion_arm * loads.mean[on],
-        peak=layout.pinion_arm * loads.largest[on],
+        torque=arm * loads.mean[on],
+        peak=arm * loads.largest[on],
         pinions=len(layout.pinions),
         bodies=len(layout.bodies),
     )

@@ -11,9 +11,9 @@ from facegear.arrays import Arrays
 from facegear.build.lubrication import limits_of
 from facegear.build.lumped_model import lumped_parts, machine
 from facegear.build.machine import tables_of
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.notes import require_buildable, require_room
 from facegear.build.plans import settings, sharing_options
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.contact.gear_flank import from_arrays
 from facegear.errors import FacegearError
 from facegear.machine.layout import Layout

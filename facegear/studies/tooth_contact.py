@@ -13,8 +13,8 @@ from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
 from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
 from facegear.build.machine import TablesOf
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.plans import contact_plan, stiffness_request
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, contact_setup, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank, gear_flank
@@ -106,7 +106,7 @@ class PairExcitation:
         """
         if self.answers is None:
             return {}
-        answers, torque = self.answers, force * self.numbers.pinion_base_radius
+        answers, torque = self.answers, force * self.numbers.pinion_arm
         return {
             ERROR_RANGE: 1e6 * answers.error_range,
             ERROR_HARMONIC: 1e6 * answers.error_harmonic,
@@ -162,13 +162,13 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         try:
             compliances, _ = bodies(pair["tooth_pair"], section)
             analysis = contact_analysis(
-                pair_design(section), materials(section), compliances, plan, every_flank=False
+                pair_design(section), materials(section), [compliances], plan, every_flank=False
             )
         except FacegearError:
             return None
-        flanks_of_it, base_radius = analysis.models[0].flanks, analysis.models[0].design.pinion_base_radius
+        flanks_of_it, normal_arm = analysis.models[0].flanks, analysis.models[0].design.normal_arm
         positions = even_positions(plan.positions)
-        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, normal_arm)
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
@@ -183,7 +183,7 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         analysis = contact_analysis(
             pair_design(section),
             materials(section),
-            compliances,
+            [compliances],
             plan,
             every_flank=False,
             known_contact=start_contact,
@@ -221,7 +221,7 @@ def _answers(
     """
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
-    approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
+    approach = torque / numbers.pinion_arm / stiffness.at(torque, "average")
     error = 1e-6 * unloaded_samples(ltca) + approach
     roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
     return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)

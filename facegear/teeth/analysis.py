@@ -1,12 +1,14 @@
 """Analysis of a pair: limits, contact path on both flanks, backlash, smallest gaps and jamming."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, pi, sin, tan
 
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.teeth import pinion
+from facegear.errors import NotConverged
+from facegear.teeth import face_gear, pinion
+from facegear.teeth.bounded_contact import ContactPath, contact_path
 from facegear.teeth.clearance import (
     TOOTH_NUMBERS,
     Gap,
@@ -17,7 +19,9 @@ from facegear.teeth.clearance import (
 )
 from facegear.teeth.curvature import relative_curvatures
 from facegear.teeth.design import PairDesign
+from facegear.teeth.family_contact import contact_line
 from facegear.teeth.limits import RadiusLimits
+from facegear.teeth.opposite import is_prismatic
 from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle, to_pinion_section
 from facegear.teeth.unloaded_contact import UnloadedContact, unloaded_contact
 from facegear.teeth.validate import check
@@ -73,8 +77,8 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
     drive = unloaded_contact(design, phi1)
     back = drive if design == mirror_design(design) else unloaded_contact(mirror_design(design), phi1)
     # the back side of phi1 is the mirrored pair at -phi1: positions are symmetric, so it is the reversed list
-    backlash = (-back.phi2[::-1] - drive.phi2) * design.gear_base_radius
-    gaps = _refined_gaps(design, drive)
+    backlash = (-back.phi2[::-1] - drive.phi2) * design.gear_normal_arm
+    gaps = _gaps_of_both(design, drive, back)
     deepest = min(gaps.values(), key=lambda gap: gap.gap)
     irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
     interference = deepest if deepest.gap < -tolerance else None
@@ -90,6 +94,22 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
     )
 
 
+def _gaps_of_both(
+    design: PairDesign, drive: UnloadedContact, back: UnloadedContact
+) -> dict[tuple[str, str], Gap]:
+    """Return smallest gaps by (pinion part, gear part) where the drive flanks touch, and of teeth whose coast
+    flanks are others also where those touch.
+    """
+    gaps = _refined_gaps(design, drive)
+    if design.is_symmetric:
+        return gaps
+    names = {"drive": "back", "back": "drive"}
+    for key, gap in _refined_gaps(mirror_design(design), back).items():
+        if key not in gaps or gap.gap < gaps[key].gap:
+            gaps[key] = replace(gap, side=names[gap.side], phi1=-gap.phi1)
+    return gaps
+
+
 def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str, str], Gap]:
     """Return smallest gaps by (pinion part, gear part) at the positions of `drive` and at 17 finer ones
     around that with the smallest gap of parts that ought not to touch.
@@ -100,17 +120,18 @@ def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str,
     step = drive.phi1[1] - drive.phi1[0]
     phi1 = worst + np.linspace(-step, step, 17)
     error = np.interp(phi1, drive.phi1, drive.transmission_error, period=2 * pi / design.pinion.teeth)
-    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
+    phi2 = conjugate_angle(design, phi1) + error / design.gear_normal_arm
     finer = smallest_gaps(design, phi1, phi2)
     return {key: min(gap, finer.get(key, gap), key=lambda g: g.gap) for key, gap in gaps.items()}
 
 
 def section_contact_ratio(design: PairDesign) -> float:
-    """Compute the unloaded contact ratio of the nominal assembly in the section of the pitch point path.
+    """Compute the unloaded contact ratio of the nominal assembly.
 
     From the gear's tip (or where the pinion's involute begins) to the pinion's tip (or where the gear's
-    flank ends), over the base pitch; the section at m N2 / 2 where the local pressure angle is the nominal
-    one.
+    flank ends), over the base pitch. Of spur teeth it is that of the section at m N2 / 2, where the local
+    pressure angle is the nominal one, and ends of the face do not count; of other teeth that of the contact
+    path within both faces, which moves along them.
 
     Parameters
     ----------
@@ -120,17 +141,58 @@ def section_contact_ratio(design: PairDesign) -> float:
     Returns
     -------
     float
-        Contact ratio, dimensionless.
+        Contact ratio, dimensionless; negative where the path misses a flank.
+
+    Raises
+    ------
+    NotConverged
+        Where the flanks have no line of contact.
     """
+    if not design.is_spur:
+        return nominal_path(design).contact_ratio
+    start, end = _section_ends(design)
+    return (start + end) / (2 * pi * design.pinion_base_radius / design.pinion.teeth)
+
+
+def nominal_path(design: PairDesign) -> ContactPath:
+    """Return the path of unloaded contact of the unmodified drive flanks in the nominal assembly.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    ContactPath
+        The line of contact and its ends.
+
+    Raises
+    ------
+    NotConverged
+        Where the flanks have no line of contact.
+    """
+    line = contact_line(design.family, 1)
+    if line is None:
+        raise NotConverged("unloaded contact", "the nominal assembly", "a line of contact")
+    return contact_path(design.family, line)
+
+
+def _section_ends(design: PairDesign) -> tuple[float, float]:
+    """Return lengths of contact (m) of a spur pair before and after the pitch point, in its section there."""
     angle, base = design.pressure_angle, design.pinion_base_radius
     tip = min(
         base * design.pinion_tip_roll,
         design.shaper_base_radius * design.shaper_tip_roll - design.shaper_lift * sin(angle),
     )
     end = tip - base * tan(angle)
-    rolling = design.gear_tip_plane + design.pinion_pitch_radius
-    start = min(rolling / sin(angle), base * (tan(angle) - pinion.junction_roll(design)))
-    return (start + end) / (2 * pi * base / design.pinion.teeth)
+    junction = float(pinion.junction_roll(design, design.middle))
+    return min(_rolling_depth(design) / sin(angle), base * (tan(angle) - junction)), end
+
+
+def _rolling_depth(design: PairDesign) -> float:
+    """Return by how much a spur gear's tip lies above the pinion's rolling line, m."""
+    return float(face_gear.tip_height(design, design.gear_pitch_radius)) + design.pinion_pitch_radius
 
 
 def path_curvatures(design: PairDesign) -> tuple[Array, Array, Array, Array]:
@@ -144,11 +206,17 @@ def path_curvatures(design: PairDesign) -> tuple[Array, Array, Array, Array]:
     Returns
     -------
     tuple of (33,) arrays
-        Pinion roll, rad, larger and smaller curvature, 1/m, and slope of the contact line, rad.
+        Pinion roll, rad, larger and smaller curvature, 1/m, and slope of the contact line against the
+        pinion's generator, rad.
     """
+    if not design.is_spur:
+        path = nominal_path(design)
+        s = np.linspace(path.first, path.last, 33)
+        length = path.line.helicoid.cosine * (s + path.line.pinion_lead)
+        return length / design.pinion_base_radius, *path.line.curvatures(s)
     angle, base = design.pressure_angle, design.pinion_base_radius
-    rolling = design.gear_tip_plane + design.pinion_pitch_radius
-    first = max(tan(angle) - rolling / sin(angle) / base, pinion.junction_roll(design))
+    first = tan(angle) - _rolling_depth(design) / sin(angle) / base
+    first = max(first, float(pinion.junction_roll(design, design.middle)))
     roll = np.linspace(first, design.pinion_tip_roll, 33)
     shaper_roll = (base * roll + design.shaper_lift * sin(angle)) / design.shaper_base_radius
     return roll, *relative_curvatures(design, shaper_roll, angle)
@@ -215,8 +283,8 @@ def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
     Returns
     -------
     (p,) array
-        Turn times r_b2, m, at least 0; 0 where nothing interferes, inf where a part has to move across
-        the turn.
+        Turn times `PairDesign.gear_normal_arm`, m, at least 0; 0 where nothing interferes, inf where a part
+        has to move across the turn.
     """
     outline, largest_turn = pinion_outline(design), np.zeros(len(contact.phi1))
     for points in gear_points(design).values():
@@ -225,8 +293,12 @@ def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
             for turn in (0.0, TURN)
         )
         distance, nearest = signed_distance(design, outline, section, 0.5 * design.module)
-        displacement = np.sum((after - section)[..., :2] * outline.normals[nearest], axis=-1)
-        lever = displacement / (TURN * design.gear_base_radius)
+        if is_prismatic(design):
+            displacement = np.sum((after - section)[..., :2] * outline.normals[nearest], axis=-1)
+        else:
+            reach = np.where(np.isfinite(distance), distance, 0.0)
+            displacement = signed_distance(design, outline, after, 0.5 * design.module)[0] - reach
+        lever = displacement / (TURN * design.gear_normal_arm)
         turn = np.where(lever > FREES, -distance / np.maximum(lever, FREES), np.inf)
         turn = np.where(distance < -TOUCH, turn, 0.0)
         largest_turn = np.maximum(largest_turn, turn.max(axis=(1, 2)))

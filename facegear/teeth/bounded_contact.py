@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
-from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.family_contact import NOMINAL, ContactLine, contact_line
 from facegear.teeth.generated_fillet import flank_end
 from facegear.teeth.helicoid import pinion_start, tip_distance
 from facegear.teeth.tooth_family import ToothFamily
@@ -164,7 +165,7 @@ def modified_contact(
     side: int,
     pinion_angle: ArrayLike,
     removal: Removal,
-    pose: PinionPose | None = None,
+    errors: AssemblyErrors = NOMINAL,
 ) -> ModifiedContact:
     """Compute the unloaded contact of a pinion with modified flanks by search; contact at edges is left out.
 
@@ -178,8 +179,8 @@ def modified_contact(
         Pinion angle, rad.
     removal : Removal
         Takes roll and y (m) and returns the depth taken off the pinion, m.
-    pose : PinionPose, optional
-        Where the pinion stands; the nominal place if None.
+    errors : AssemblyErrors
+        Errors of assembly; none by default.
 
     Returns
     -------
@@ -191,9 +192,9 @@ def modified_contact(
     NotConverged
         Where the unmodified flanks have no contact line, or the search does not end.
     """
-    line = contact_line(family, side, pose)
+    line = contact_line(family, side, errors)
     if line is None:
-        raise NotConverged("unloaded contact", "this pose", "a line of contact of the unmodified flanks")
+        raise NotConverged("unloaded contact", "this assembly", "a line of contact of the unmodified flanks")
     angle = np.atleast_1d(np.asarray(pinion_angle, float))
     turned_on = angle[:, None] + PAIRS * (2 * np.pi / family.pinion_teeth)
     search = _Search(family, line, removal)

@@ -175,8 +175,8 @@ def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
     return FlankGaps.of_pairs(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
 
-def bounds(design: PairDesign) -> tuple[Array, Array]:
-    """Return the limits of the parameters (roll, y) on the pinion's flank.
+def face_ends(design: PairDesign) -> tuple[float, float]:
+    """Return the ends of the pinion's face.
 
     Parameters
     ----------
@@ -185,12 +185,17 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
 
     Returns
     -------
-    tuple of (2,) arrays
-        Lower and upper end of roll (rad) and y (m).
+    tuple[float, float]
+        Smallest and largest y, m.
     """
     half = design.pinion.width / 2
-    low = np.array([pinion.junction_roll(design), design.mean_radius - half])
-    return low, np.array([design.pinion_tip_roll, design.mean_radius + half])
+    return design.middle - half, design.middle + half
+
+
+def _is_inside(design: PairDesign, roll: Array, y: Array) -> Mask:
+    """Return whether rolls (rad) and y (m), (...), lie within the ends of the flank."""
+    (low, high), (first, last) = pinion.roll_ends(design, y), face_ends(design)
+    return (roll > low) & (roll < high) & (y > first) & (y < last)
 
 
 def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
@@ -200,14 +205,15 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tupl
     Pairs within `margin` (m) and a little more of the smallest gap are followed by finer grids, shrunk
     _FIRST times.
     """
-    low, high = bounds(design)
-    face = design.face_gear
-    first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
-    rolls, ys = np.linspace(low[0], high[0], 15), np.linspace(first, last, 15)
-    roll, y = (part.ravel() for part in np.meshgrid(rolls, ys, indexing="ij"))
+    face, (first, last) = design.face_gear, face_ends(design)
+    if design.is_spur:
+        first, last = max(first, face.inner_radius - 0.02 * design.module), min(last, face.outer_radius)
+    ys = np.linspace(first, last, 15)
+    rolls = np.linspace(*pinion.roll_ends(design, ys), num=15)
+    roll, y = rolls.ravel(), np.broadcast_to(ys, rolls.shape).ravel()
     pairs = _pairs(design, phi1, phi2)
     gap = pairs.at(roll, y)
-    best, size = np.argmin(gap, axis=1), np.array([rolls[1] - rolls[0], ys[1] - ys[0]])
+    best, size = np.argmin(gap, axis=1), np.array([(rolls[1] - rolls[0]).max(), ys[1] - ys[0]])
     near = [part.reshape(len(phi1), len(PAIRS)) for part in (gap.min(axis=1), roll[best], y[best])]
     beside = margin + _COARSE * design.module
     walking = near[0] <= near[0].min(axis=1, keepdims=True) + beside
@@ -243,14 +249,15 @@ def _walk_grids(
     The grids lean along the contact line where the walk begins, as the gap is a narrow and flat valley in its
     direction. `size` (2,) is the first half width in roll (rad) and y (m); the last is _SHRINK^levels of it.
     """
-    low, high = bounds(pairs.design)
+    face = face_ends(pairs.design)
     width = np.tile(size, (len(roll), 1))
     gap, roll, y = np.full(len(roll), np.inf), roll.copy(), y.copy()
     lean, active = _contact_line(pairs.design, roll, y), np.arange(len(roll))
     for _ in range(_MAX_STEPS):
         across, along = (part * width[active, axis, None] for axis, part in enumerate((_ACROSS, _ALONG)))
-        rolls = np.clip(roll[active, None] + across + lean[active, None] * along, low[0], high[0])
-        ys = np.clip(y[active, None] + along, low[1], high[1])
+        ys = np.clip(y[active, None] + along, *face)
+        rolls = roll[active, None] + across + lean[active, None] * along
+        rolls = np.clip(rolls, *pinion.roll_ends(pairs.design, ys))
         gaps, rows = pairs.only(active).at(rolls, ys), np.arange(len(active))
         best = np.argmin(gaps, axis=1)
         new = gaps[rows, best]
@@ -271,7 +278,6 @@ def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Arr
 
     Where a modification begins within a stencil, or the flank ends, a finer one has its minimum elsewhere.
     """
-    low, high = bounds(pairs.design)
     minimum, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
     active, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
     for _ in range(_NEWTON_STEPS):
@@ -280,7 +286,7 @@ def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Arr
         bowl = _bowl(pairs.only(active), *last, part[:, None] * _STEP)
         new = last[0] + part * bowl.across * _STEP[0], last[1] + part * bowl.along * _STEP[1]
         size, bend = np.hypot(bowl.across, bowl.along), bowl.bend / part[:, None] ** 2
-        inside = (new[0] > low[0]) & (new[0] < high[0]) & (new[1] > low[1]) & (new[1] < high[1])
+        inside = _is_inside(pairs.design, *new)
         has_equal_curvature = (np.abs(bend - bends[active]) < _SMOOTH * bend).all(axis=1)
         continues = (
             bowl.convex & inside & np.where(fine, has_equal_curvature & (size < 0.5), size < _FARTHEST)
@@ -314,15 +320,9 @@ def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Arra
     A minimum stays as it is where the step leaves the flank or does not make the gap less.
     """
     bowl = _bowl(pairs, roll, y, np.tile(_STEP, (len(roll), 1)))
-    low, high = bounds(pairs.design)
     new_roll, new_y = roll + bowl.across * _STEP[0], y + bowl.along * _STEP[1]
-    good = (
-        bowl.convex
-        & (np.hypot(bowl.across, bowl.along) < _FARTHEST)
-        & (new_roll > low[0])
-        & (new_roll < high[0])
-    )
-    good &= (new_y > low[1]) & (new_y < high[1])
+    good = bowl.convex & (np.hypot(bowl.across, bowl.along) < _FARTHEST)
+    good &= _is_inside(pairs.design, new_roll, new_y)
     new_roll, new_y = np.where(good, new_roll, roll), np.where(good, new_y, y)
     new = pairs.at(new_roll[:, None], new_y[:, None])[:, 0]
     better = good & (new < gap)
@@ -352,8 +352,12 @@ def _contact_line(design: PairDesign, roll: Array, y: Array) -> Array:
     """Return the slope d roll / d y (rad/m) of the contact line of the nominal pair at roll (rad) and y
     (m).
     """
-    psi = face_gear.local_pressure_angle(design, np.maximum(y, 1.001 * design.gear_base_radius))
-    length = design.pinion_base_radius * roll
-    shaper_roll = (length + design.shaper_lift * np.sin(psi)) / design.shaper_base_radius
-    _, _, slope = relative_curvatures(design, shaper_roll, psi)
-    return np.tan(slope) / np.maximum(length, 1e-2 * design.module)
+    helicoid, length = design.family.pinion_flanks[0], design.pinion_base_radius * roll
+    is_straight = helicoid.sine == 0.0 and design.family.motion.cosine == 0.0
+    nearest = 1.001 * design.gear_base_radius if is_straight else -np.inf
+    psi = face_gear.slope_at_place(design, np.maximum(y, nearest), length / design.shaper_base_radius)
+    s = (length + design.shaper_lift * np.sin(psi)) / helicoid.cosine
+    _, _, slope = relative_curvatures(design, s / design.shaper_base_radius, psi)
+    # across the generator the length of roll grows by r_b / roll, along it it falls by the base helix's sine
+    roll_slope = np.tan(slope) / np.maximum(length, 1e-2 * design.module)
+    return (roll_slope - helicoid.sine / helicoid.base_radius) / helicoid.cosine

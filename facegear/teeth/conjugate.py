@@ -1,21 +1,23 @@
 """Unloaded contact of flanks without modifications, in closed form for every assembly.
 
-The pinion is a cylinder, so that conjugate action survives any displacement of it: all contact stands on one
-normal, at one place y along the pinion's axis, with one slope psi, and the transmission error is constant.
-`family_contact` solves for that normal; here are spur pairs, whose numbers poses of machines store.
+A pinion of the same base pitch runs conjugate with the gear wherever it stands: all contact is on one normal,
+with one slope psi, and the transmission error is constant. Contact of teeth without a helix stays at one
+place y along the pinion's axis. `family_contact` solves for that normal; here are the numbers of a pair that
+poses of machines store.
 """
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from functools import cached_property, lru_cache
-from math import acos, cos, pi, sin
+from math import acos, cos, pi, sin, sqrt
 from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import AssemblyErrors, PairDesign
-from facegear.teeth.family_contact import ContactLine, PinionPose, contact_line, find_line, place_line
+from facegear.teeth.family_contact import ContactLine, contact_line, find_line, place_line
 from facegear.teeth.flank_shapes import GearModifications
 from facegear.teeth.generated_flank import GearFlank
 from facegear.teeth.tooth_family import Helicoid, RelativeMotion
@@ -28,9 +30,11 @@ GEAR_ENDS = ("gear inner end", "gear outer end")
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """Eleven numbers of a spur pair that the closed form and the ends of the faces need; m and rad.
+    """Numbers of a pair's drive flanks that the closed form and the ends of the faces need; m and rad.
 
-    first_end, last_end: ends of the common face, distances from the gear's axis along the pinion's.
+    pressure_angle: in the transverse section. mean_radius: place y of the middle of the pinion's face, at
+    which half base and half space angle count. first_end, last_end: ends of the common face, places y along
+    the pinion's axis. base_helix_sine: signed sine of the base helix angle.
     """
 
     pressure_angle: float
@@ -44,6 +48,9 @@ class PairNumbers:
     mean_radius: float
     first_end: float
     last_end: float
+    base_helix_sine: float = 0.0
+    shaft_angle: float = pi / 2
+    offset: float = 0.0
 
     @classmethod
     def of_design(cls, design: PairDesign) -> Self:
@@ -59,9 +66,18 @@ class PairNumbers:
         PairNumbers
             Numbers in m and rad.
         """
-        half, face = design.pinion.width / 2, design.face_gear
+        half, face, motion = design.pinion.width / 2, design.face_gear, design.family.motion
+        # where the gear's end cylinders pass the pinion's pitch line
+        inner, outer = (
+            (
+                sqrt((radius - design.offset) * (radius + design.offset))
+                + motion.cosine * design.pinion_pitch_radius
+            )
+            / motion.sine
+            for radius in (face.inner_radius, face.outer_radius)
+        )
         return cls(
-            pressure_angle=design.pressure_angle,
+            pressure_angle=design.transverse_pressure_angle,
             pinion_teeth=float(design.pinion.teeth),
             pinion_base_radius=design.pinion_base_radius,
             pinion_half_base_angle=design.pinion_half_base_angle,
@@ -69,9 +85,12 @@ class PairNumbers:
             shaper_half_space_angle=design.shaper_half_space_angle,
             shaper_lift=design.shaper_lift,
             gear_base_radius=design.gear_base_radius,
-            mean_radius=design.mean_radius,
-            first_end=max(face.inner_radius, design.mean_radius - half),
-            last_end=min(face.outer_radius, design.mean_radius + half),
+            mean_radius=design.middle,
+            first_end=max(inner, design.middle - half),
+            last_end=min(outer, design.middle + half),
+            base_helix_sine=design.family.pinion_flanks[0].sine,
+            shaft_angle=design.shaft_angle,
+            offset=design.offset,
         )
 
     @classmethod
@@ -80,7 +99,7 @@ class PairNumbers:
 
         Parameters
         ----------
-        values : (11,) array
+        values : (14,) array
             Numbers in m and rad, in the order of the fields.
 
         Returns
@@ -92,35 +111,43 @@ class PairNumbers:
 
     @property
     def array(self) -> Array:
-        """All numbers as one array (11,) in the order of the fields, m and rad; `of_array` reads it."""
+        """All numbers as one array (14,) in the order of the fields, m and rad; `of_array` reads it."""
         return np.array(astuple(self))
 
     @cached_property
     def _pinion(self) -> Helicoid:
-        """Drive flank of the pinion as an involute helicoid without helix."""
+        """Drive flank of the pinion as an involute helicoid."""
         phase = self.pinion_half_base_angle - pi / self.pinion_teeth
         return self._helicoid(self.pinion_base_radius, phase, self.pinion_teeth)
 
     @cached_property
     def _motion(self) -> RelativeMotion:
-        """Nominal motion of the pinion against the gear, without offset at 90 degrees."""
-        return RelativeMotion(self.pinion_base_radius / self.gear_base_radius)
+        """Nominal motion of the pinion against the gear."""
+        return self._against_gear(self.pinion_base_radius)
 
     @cached_property
     def _gear(self) -> GearFlank:
         """Drive flank of the gear as its shaper generates it."""
         teeth = self.pinion_teeth * self.shaper_base_radius / self.pinion_base_radius
         shaper = self._helicoid(self.shaper_base_radius, -self.shaper_half_space_angle, teeth)
-        motion = RelativeMotion(self.shaper_base_radius / self.gear_base_radius)
-        return GearFlank(shaper, motion, self.shaper_lift)
+        return GearFlank(shaper, self._against_gear(self.shaper_base_radius), self.shaper_lift)
+
+    def _against_gear(self, base_radius: float) -> RelativeMotion:
+        """Return the motion against the gear of a pinion or shaper with a base radius (m)."""
+        return RelativeMotion(base_radius / self.gear_base_radius, self.shaft_angle, self.offset)
 
     def _helicoid(self, base_radius: float, phase: float, teeth: float) -> Helicoid:
-        """Return the spur drive flank with a base radius (m), a phase (rad, see `Helicoid`) and so many
-        teeth.
-        """
-        pitch_radius = base_radius / cos(self.pressure_angle)
-        half = phase + pi / teeth
-        return Helicoid(1, pitch_radius, base_radius, self.pressure_angle, 0.0, half, phase, self.mean_radius)
+        """Return the drive flank with a base radius (m), a phase (rad, see `Helicoid`) and so many teeth."""
+        return Helicoid(
+            side=1,
+            pitch_radius=base_radius / cos(self.pressure_angle),
+            base_radius=base_radius,
+            pressure_angle=self.pressure_angle,
+            sine=self.base_helix_sine,
+            half_base_angle=phase + pi / teeth,
+            phase=phase,
+            middle=self.mean_radius,
+        )
 
     def contact_line(self, errors: AssemblyErrors) -> ContactLine | None:
         """Compute the line on which all contact of the drive flanks runs in an assembly, edges left out.
@@ -137,7 +164,7 @@ class PairNumbers:
         """
         if self.shaper_lift <= 0.0:
             return None
-        line = find_line(self._gear, self._pinion, self._motion, PinionPose(errors))
+        line = find_line(self._gear, self._pinion, self._motion, errors)
         return line if line is not None and line.psi > 0.0 else None
 
     def place_line(self, errors: AssemblyErrors, psi: float, turn: float) -> ContactLine:
@@ -157,7 +184,7 @@ class PairNumbers:
         ContactLine
             The line.
         """
-        return place_line(self._gear, self._pinion, self._motion, PinionPose(errors), psi, turn)
+        return place_line(self._gear, self._pinion, self._motion, errors, psi, turn)
 
 
 @dataclass(frozen=True)
@@ -171,12 +198,34 @@ class ConjugateContact:
     turn
         Of that normal about the gear's axis (rad).
     transmission_error
-        (phi2 - phi1 N1 / N2) r_b2 along the line of action, m, as in `UnloadedContact`.
+        (phi2 - phi1 N1 / N2) times `PairDesign.gear_normal_arm`, along the line of action, m, as in
+        `UnloadedContact`.
     y
-        Place along the pinion's axis, counted on the pinion (m).
+        Place along the pinion's axis, counted on the pinion, where the normal touches its base cylinder (m);
+        without a helix that of the contact.
     normal_roll
-        Roll angle (rad) of the contact of pair 0 on the pinion at phi1 = 0.
+        Turn (rad) of the normal of pair 0 about the pinion's axis at phi1 = 0 since the involute began at y =
+        middle; without a helix the roll angle of its contact.
     """
+
+    def pinion_place(self, helicoid: Helicoid, turn: ArrayLike) -> tuple[Array, Array]:
+        """Compute where the contact is on the pinion after a turn.
+
+        Parameters
+        ----------
+        helicoid : Helicoid
+            Drive flank of the pinion.
+        turn : (...) array_like
+            Turn of the pinion's tooth from pair 0 at phi1 = 0, rad.
+
+        Returns
+        -------
+        tuple of (...) arrays
+            Roll angle, rad, and y, m.
+        """
+        angle = helicoid.cosine * (self.normal_roll + np.asarray(turn, float))
+        angle = angle - helicoid.sine * (self.y - helicoid.middle) / helicoid.base_radius
+        return helicoid.cosine * angle, self.y + helicoid.sine * helicoid.base_radius * angle
 
     psi: float
     turn: float
@@ -247,7 +296,7 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
     """
     if not without_modifications(design):
         return None
-    line = contact_line(design.family, 1, PinionPose(design.assembly))
+    line = contact_line(design.family, 1, design.assembly)
     if line is None or design.shaper_lift <= 0.0 or line.psi <= 0.0:
         return None
     path = contact_path(design.family, line)
@@ -257,7 +306,8 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
 
 
 def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float | None:
-    """Compute the offset with which contact occurs at a position y along the pinion, by Newton's method.
+    """Compute the offset with which the contact's normal is at a position y along the pinion, by Newton's
+    method.
 
     Parameters
     ----------
@@ -266,20 +316,20 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
     path : float
         Position of the contact along the pinion, m.
     errors : AssemblyErrors
-        Errors of the assembly, of which shaft angle and axial shift are used, the offset is not.
+        Errors of the assembly, of which the offset is not used.
 
     Returns
     -------
     float, optional
         Offset, m; None where there is none.
     """
-    psi, tilt = acos(pair.gear_base_radius / path), errors.shaft_angle_error
     lift, step = pair.shaper_lift, 1e-7
-    offset = ((lift - errors.gear_axial) * cos(psi) - lift * cos(pair.pressure_angle)) / sin(psi)
+    offset = 0.0
+    if pair.base_helix_sine == 0.0 and path > pair.gear_base_radius:
+        psi = acos(pair.gear_base_radius / path)
+        offset = ((lift - errors.gear_axial) * cos(psi) - lift * cos(pair.pressure_angle)) / sin(psi)
     for _ in range(STEPS):
-        near = [
-            contact_at(pair, AssemblyErrors(at, tilt, errors.gear_axial)) for at in (offset, offset + step)
-        ]
+        near = [contact_at(pair, replace(errors, offset=at)) for at in (offset, offset + step)]
         if near[0] is None or near[1] is None:
             return None
         path_error = near[0].y - path

@@ -4,20 +4,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
 from facegear.teeth.generated_flank import gear_flank
 from facegear.teeth.limits import sharpest_fillet_radius
 from facegear.teeth.modifications import added_curvatures, derivative
 from facegear.teeth.tooth_family import stack_vectors, turn_about_axis
+from facegear.teeth.tooth_sides import GearSide, PinionSide
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
     """Compute principal relative curvatures (the pinion's plus the gear's) at a point of the gear flank,
     in the nominal assembly, convex counted positive.
 
-    The pinion's radius of curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1
-    everywhere, for N_s > N1 on the contact path, where psi is the pressure angle.
+    The pinion's radius of curvature is taken on the same normal: exact for N_s = N1 everywhere, for N_s > N1
+    on the contact path, where psi is the pressure angle.
 
     Parameters
     ----------
@@ -32,14 +33,17 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
     -------
     tuple of (...) arrays
         Relative curvature of larger and of smaller magnitude, 1/m, and the angle of the contact line, the
-        smaller one's direction, from the pinion's axis, rad.
+        smaller one's direction, from the pinion's generator, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    base, flank = design.shaper_base_radius, gear_flank(design.mirror_family, -1)
-    turn = flank.turn(psi, base * roll, design.mean_radius)
-    profile = turn_about_axis(turn, stack_vectors(np.sin(psi), 0.0, -np.cos(psi)))
-    axial = turn_about_axis(turn, np.broadcast_to([0.0, 1.0, 0.0], profile.shape))
-    nominal = 1 / (base * roll - design.shaper_lift * np.sin(psi)), 0.0, 0.0
+    flank, s = gear_flank(design.mirror_family, -1), design.shaper_base_radius * roll
+    turn = flank.turn(psi, s, flank.lines(psi).y)
+    eta, c, sine = flank.shaper.sine, np.cos(psi), np.sin(psi)
+    # radially from the pinion's axis to the normal, and along its generator; the mirror reverses x
+    profile = turn_about_axis(turn, stack_vectors(sine, 0.0, -c) @ flank.motion.basis)
+    generator = stack_vectors(eta * c, flank.shaper.cosine, eta * sine) @ flank.motion.basis
+    axial = turn_about_axis(turn, generator)
+    nominal = 1 / (s - design.shaper_lift * sine / flank.shaper.cosine), 0.0, 0.0
     return _principal(design, roll, psi, profile, axial, nominal)
 
 
@@ -78,30 +82,65 @@ def opposite_curvatures(
     pinion_roll, y, roll, psi = np.broadcast_arrays(
         *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
     )
-    nx, nz = pinion.involute_normal(design, pinion_roll)
-    tangent = np.stack([-nz, np.zeros_like(nx), nx], axis=-1)
-    profile = np.einsum("...ij,...j->...i", to_gear, tangent)
-    axial = np.broadcast_to(to_gear[..., :, 1], profile.shape)
+    profile, axial, slopes = _pinion_directions(design, pinion_roll, y, to_gear)
     across, along, twist = added_curvatures(design, face_gear.flank_point(design, roll, psi))
     own_curvatures = _pinion_deviation(design, pinion_roll, y)
-    curvature = (
-        1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own_curvatures[0]
-    )
-    # depth below the gear's tip plane and roll both fall along the profile's tangent
-    total_twist = -profile[..., 2] * twist + own_curvatures[2]
-    return _principal(design, roll, psi, profile, axial, (curvature, along + own_curvatures[1], total_twist))
+    # changes of gear radius and of depth below its tip per length along profile and generator
+    (radial, axial_radial), (depth, axial_depth) = slopes
+    length = design.pinion_base_radius * pinion_roll / design.family.pinion_flanks[0].cosine
+    curvature = 1 / length + across * depth**2 + own_curvatures[0]
+    curvature = curvature + 2 * twist * radial * depth + along * radial**2
+    axial_curvature = along * axial_radial**2 + own_curvatures[1]
+    axial_curvature = axial_curvature + 2 * twist * axial_radial * axial_depth + across * axial_depth**2
+    total_twist = twist * depth * axial_radial + own_curvatures[2]
+    total_twist = total_twist + twist * radial * axial_depth + along * radial * axial_radial
+    total_twist = total_twist + across * depth * axial_depth
+    return _principal(design, roll, psi, profile, axial, (curvature, axial_curvature, total_twist))
+
+
+def _pinion_directions(
+    design: PairDesign, roll: Array, y: Array, to_gear: Array
+) -> tuple[Array, Array, tuple[tuple[Array, Array], tuple[Array, Array]]]:
+    """Return the pinion's unit tangents (..., 3) across and along its tooth, at roll (rad) and y (m), in the
+    gear's body frame, and the slopes of gear radius and of depth below the gear's tip along either tangent.
+
+    The generator is the tangent along the tooth. Slopes are those of the nominal assembly in the plane of
+    both axes, but for the depth across the tooth.
+    """
+    flank, motion = pinion.pinion_flank(design), design.family.motion
+    helicoid = flank.helicoid
+    psi = flank.slope(helicoid.base_radius * roll, y)
+    c, sine = np.cos(psi), np.sin(psi)
+    tangent = stack_vectors(sine, 0.0, c)
+    generator = stack_vectors(-helicoid.sine * c, helicoid.cosine, helicoid.sine * sine)
+    profile, axial = (np.einsum("...ij,...j->...i", to_gear, part) for part in (tangent, generator))
+    tip_slope = design.family.gear_tip.slope
+    # in mesh psi is the local pressure angle, whatever the turn of the pinion's body
+    upright = np.sin(design.transverse_pressure_angle)
+    radial = np.cos(design.transverse_pressure_angle) * motion.cosine
+    axial_radial = helicoid.cosine * motion.sine + helicoid.sine * upright * motion.cosine
+    axial_height = helicoid.sine * upright * motion.sine - helicoid.cosine * motion.cosine
+    depths = tip_slope * radial - profile[..., 2], tip_slope * axial_radial - axial_height
+    return profile, axial, ((radial, axial_radial), depths)
 
 
 def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
     """Return the curvatures (1/m), convex positive, that deviations of the pinion add at roll (rad) and y
     (m).
 
-    They are across the profile, where its arc grows by r_b th dth, along the axis, and their twist.
+    They are across the profile, where its arc grows by r_b th dth, along the generator, on which the length
+    of roll falls by the sine of the base helix, and their twist.
     """
     grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
-    slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
-    across = slope - derivative(grid, *at, (0, 2)) / roll**2
-    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1)) / roll
+    helicoid = design.family.pinion_flanks[0]
+    eta, c, base = helicoid.sine, helicoid.cosine, helicoid.base_radius
+    slope, bend = derivative(grid, *at, (0, 1)), derivative(grid, *at, (0, 2))
+    across = slope / (base * roll**3) - bend / roll**2
+    along, twist = -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1))
+    if eta == 0.0:
+        return across, along, twist / roll
+    along = c**2 * along + 2 * c * eta * twist - eta**2 * bend
+    return across, along, (c * twist - eta * bend) / roll + eta * slope / (base * roll**2)
 
 
 def _principal(
@@ -137,13 +176,16 @@ def _principal(
 
 SAMPLES = 401
 """Points of a section, evenly in its parameter."""
+RADII = 9
+"""Sections of a gear whose sharpest fillet has no closed form; the ends are sharpest on most faces."""
 
 
 def smallest_radius(design: PairDesign, body: str) -> float:
     """Compute the smallest radius of curvature of the pinion's fillet section, or of the gear's over its
     face.
 
-    It is taken from sampled points; the gear's sections are at both ends and where the fillet is sharpest.
+    It is taken from sampled points of both sides' fillets; the gear's sections are at both ends and where the
+    fillet is sharpest, or evenly over the face of teeth that are not spur.
 
     Parameters
     ----------
@@ -157,17 +199,23 @@ def smallest_radius(design: PairDesign, body: str) -> float:
     float
         m.
     """
-    if body == "pinion":
-        gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
-        radius, angle = pinion.trochoid_point(design, gamma)
-        return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
-    ends = design.face_gear.inner_radius, design.face_gear.outer_radius
-    radii = []
-    for gear_radius in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
-        slopes = face_gear_fillet.fillet_slopes(design, gear_radius, np.linspace(0.0, 1.0, SAMPLES))
-        angle, z = face_gear_fillet.fillet_section(design, gear_radius, slopes)
-        radii.append(_sharpest(gear_radius * angle, z))
-    return min(radii)
+    families = (design.family,) if design.is_symmetric else (design.family, design.mirror_family)
+    parts, radii = np.linspace(0.0, 1.0, SAMPLES), []
+    for family in families:
+        if body == "pinion":
+            ends = design.middle + design.pinion.width / 2 * np.array([-1.0, 1.0])
+            planes = ends if design.taper_angle else np.array([design.middle])
+            angle, radius = PinionSide(family, planes).fillet_section(parts)
+            across, height = radius * np.sin(angle), radius * np.cos(angle)
+        else:
+            face = design.face_gear.inner_radius, design.face_gear.outer_radius
+            sharpest = np.clip(sharpest_fillet_radius(design), *face)
+            planes = np.array([*face, sharpest]) if design.is_spur else np.linspace(*face, RADII)
+            angle, height = GearSide(family, planes).fillet_section(parts)
+            across = planes * angle
+        radii += [_sharpest(*plane) for plane in zip(across.T, height.T, strict=True)]
+    # points coincide in the corner that a sharp edge leaves at one radius, where there is no number
+    return float(np.nanmin(radii))
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
@@ -175,5 +223,6 @@ def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
     out.
     """
     dx, dz = np.gradient(x), np.gradient(z)
-    bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
+    with np.errstate(invalid="ignore"):
+        bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
     return float(1.0 / bend[2:-2].max())

@@ -224,68 +224,79 @@ class PairDesign:
     @cached_property
     def gear_normal_arm(self) -> float:
         """Torque on the gear over the force along the drive flank's normal, m."""
-        return self.normal_arm * self.face_gear.teeth / self.pinion.teeth
+        return self.gear_base_radius * self.family.pinion_flanks[0].cosine
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle of the drive flank in the pinion's transverse section, rad."""
+        return self.family.pinion_flanks[0].pressure_angle
 
     @cached_property
     def pinion_tip_radius(self) -> float:
-        """Tip radius of the pinion, profile shift included, m."""
+        """Tip radius of the pinion in the middle of its face, profile shift included, m."""
         return self.pinion_pitch_radius + self.pinion.addendum + self.pinion.profile_shift
 
     @cached_property
     def pinion_root_radius(self) -> float:
-        """Root radius of the pinion, profile shift included, m."""
+        """Root radius of the pinion in the middle of its face, profile shift included, m."""
         return self.pinion_pitch_radius - self.pinion.dedendum + self.pinion.profile_shift
 
     @cached_property
     def pinion_half_base_angle(self) -> float:
-        """Half the angle of the pinion's tooth on its base circle (rad), thinning taken off."""
-        teeth, shift = self.pinion.teeth, self.pinion.profile_shift / self.module
-        nominal = pi / (2 * teeth) + 2 * shift * tan(self.pressure_angle) / teeth
-        return nominal + involute(self.pressure_angle) - self.pinion.thinning / (2 * self.pinion_base_radius)
+        """Half the angle (rad) of the pinion's tooth on its base circle in the middle of its face, to the
+        drive flank, thinning taken off.
+        """
+        return self.family.pinion_flanks[0].half_base_angle
 
     @cached_property
     def pinion_tip_roll(self) -> float:
-        """Roll angle (rad) where the involute ends: at the tip circle or at the chamfer."""
+        """Roll angle (rad) where the involute ends in the middle of the face: at the tip or chamfer."""
         ratio = (self.pinion_tip_radius - self.pinion.tip_chamfer) / self.pinion_base_radius
         return sqrt(max(ratio**2 - 1, 0.0))
 
     @cached_property
     def shaper_pitch_radius(self) -> float:
         """Pitch radius of the shaper, m."""
-        return self.module * self.shaper.teeth / 2
+        return self.family.shaper_pitch_radius
 
     @cached_property
     def shaper_base_radius(self) -> float:
-        """Base radius of the shaper, m."""
-        return self.shaper_pitch_radius * cos(self.pressure_angle)
+        """Radius of the base cylinder of the shaper's drive flank, m."""
+        return self.family.shaper_flanks[0].base_radius
 
     @cached_property
     def shaper_tip_radius(self) -> float:
-        """Tip radius of the shaper, m."""
-        return self.shaper_pitch_radius + self.shaper.addendum + self.pinion.profile_shift
+        """Tip radius of the shaper in the middle of the pinion's face, m."""
+        return self.family.shaper_tip_radius
 
     @cached_property
     def shaper_rounding_centre(self) -> float:
-        """Distance (m) of the centre of the shaper's tip rounding, or of a sharp edge, from its axis."""
-        return self.shaper_tip_radius - self.shaper.tip_rounding
+        """Distance (m) of the centre of the shaper's tip rounding, or of a sharp edge, from its axis, in the
+        middle of the pinion's face.
+        """
+        return self.family.rounding_centre
 
     @cached_property
     def shaper_rounding_roll(self) -> float:
-        """Roll angle (rad) of an involute through the tip rounding's centre: the tangent of its pressure
-        angle.
+        """Roll angle (rad) of an involute through the tip rounding's centre, in the middle of the pinion's
+        face: the tangent of its pressure angle.
         """
         return sqrt(max((self.shaper_rounding_centre / self.shaper_base_radius) ** 2 - 1, 0.0))
 
     @cached_property
     def shaper_tip_roll(self) -> float:
-        """Roll angle th* (rad) where the shaper's involute ends: at its tip circle or at the rounding."""
-        return self.shaper_rounding_roll + self.shaper.tip_rounding / self.shaper_base_radius
+        """Distance along the normal over the shaper's base radius (rad) where the gear's flank ends, at the
+        shaper's tip or its rounding; of tapered teeth where the normal's foot is in the middle of the face.
+        """
+        length = self.shaper_rounding_roll / self.family.shaper_flanks[0].cosine
+        return length + self.shaper.tip_rounding / self.shaper_base_radius
 
     @cached_property
     def shaper_half_space_angle(self) -> float:
-        """th_os (rad): half the shaper's space angle on its base circle."""
-        teeth, shift = self.shaper.teeth, self.pinion.profile_shift / self.module
-        return (pi / 2 - 2 * shift * tan(self.pressure_angle)) / teeth - involute(self.pressure_angle)
+        """th_os (rad): half the shaper's space angle on its base circle, to the drive flank, in the middle of
+        the pinion's face.
+        """
+        return -self.family.shaper_flanks[0].phase
 
     @cached_property
     def shaper_ratio(self) -> float:
@@ -295,7 +306,7 @@ class PairDesign:
     @cached_property
     def shaper_lift(self) -> float:
         """Height (m) of the shaper's axis above the pinion's nominal axis."""
-        return self.shaper_pitch_radius - self.pinion_pitch_radius
+        return self.family.lift
 
     @cached_property
     def pitch_plane(self) -> float:
@@ -319,13 +330,17 @@ class PairDesign:
 
     @cached_property
     def gear_base_radius(self) -> float:
-        """r_b2 = m N2 cos a0 / 2 (m): the radius where the local pressure angle vanishes."""
-        return self.module * self.face_gear.teeth * cos(self.pressure_angle) / 2
+        """Base radius (m) of the pinion's drive flank times the ratio; of spur teeth the gear radius at which
+        the local pressure angle vanishes.
+        """
+        return self.transverse_module * self.face_gear.teeth * cos(self.transverse_pressure_angle) / 2
 
     @cached_property
     def gear_pitch_radius(self) -> float:
-        """m N2 / 2 (m): the radius of the point contact path of the nominal assembly."""
-        return self.module * self.face_gear.teeth / 2
+        """Transverse module times half the gear's teeth (m): of spur teeth the radius of the contact path of
+        the nominal assembly.
+        """
+        return self.transverse_module * self.face_gear.teeth / 2
 
     @cached_property
     def mean_radius(self) -> float:

@@ -1,7 +1,7 @@
 """Results of the geometry stage as a record and as arrays, with separation contours of the flanks."""
 
 from dataclasses import asdict, dataclass
-from math import pi
+from math import isfinite, pi
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,9 @@ from facegear.arrays import AnyArray, Array, Mask
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.analysis import PairAnalysis, path_curvatures
 from facegear.teeth.clearance import Gap, pinion_outline
+from facegear.teeth.conjugate import PairNumbers
 from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_numbers import blank_numbers, flank_numbers
 from facegear.teeth.placement import conjugate_angle
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
@@ -63,14 +65,11 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     EaseOff
         Grid of gaps, m.
     """
-    gear = design.face_gear
-    half = design.pinion.width / 2
-    first = max(gear.inner_radius, design.mean_radius - half)
-    last = min(gear.outer_radius, design.mean_radius + half)
-    rolls = np.linspace(pinion.junction_roll(design), design.pinion_tip_roll, shape[0])
-    roll, y = np.meshgrid(rolls, np.linspace(first, last, shape[1]), indexing="ij")
+    numbers = PairNumbers.of_design(design)
+    ys = np.linspace(numbers.first_end, numbers.last_end, shape[1])
+    roll, y = np.linspace(*pinion.roll_ends(design, ys), num=shape[0]), np.broadcast_to(ys, shape)
     phi1 = np.linspace(-1.5, 1.5, 61) * 2 * pi / design.pinion.teeth
-    phi2 = conjugate_angle(design, phi1) + transmission_error / design.gear_base_radius
+    phi2 = conjugate_angle(design, phi1) + transmission_error / design.gear_normal_arm
     separations = separation(design, flank_points(design, roll, y).flat(), phi1, phi2)
     gap = np.where(separations.part == FLANK, separations.gap, np.inf)
     best = np.clip(np.argmin(gap, axis=0), 1, len(phi1) - 2)
@@ -97,8 +96,8 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
 
 
 def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
-    """Return the content of `geometry/pair.json`: radii, limits, contact ratio and path, backlash, smallest
-    gaps.
+    """Return the content of `geometry/pair.json`: numbers of blanks and flanks, radii, limits, contact ratio
+    and path, backlash, smallest gaps.
 
     Parameters
     ----------
@@ -116,12 +115,15 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
     roll, large, small, slope = path_curvatures(design)
     return {
         "design_si": asdict(design),
+        "blanks": blank_numbers(design),
+        "flanks": flank_numbers(design),
         "radii_mm": {
             "pinion_base": 1e3 * design.pinion_base_radius,
             "pinion_pitch": 1e3 * design.pinion_pitch_radius,
             "pinion_tip": 1e3 * design.pinion_tip_radius,
             "pinion_root": 1e3 * design.pinion_root_radius,
-            "pinion_fillet_start": 1e3 * float(pinion.trochoid_point(design, design.pressure_angle)[0]),
+            "pinion_fillet_start": 1e3
+            * float(pinion.trochoid_point(design, design.transverse_pressure_angle, design.middle)[0]),
             "gear_base": 1e3 * design.gear_base_radius,
             "gear_contact_path_nominal": 1e3 * design.gear_pitch_radius,
             "gear_inner": 1e3 * design.face_gear.inner_radius,
@@ -129,8 +131,8 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
         },
         "limits_mm": {
             "inner_undercut": 1e3 * limits.inner,
-            "outer_pointing": 1e3 * limits.outer,
-            "outer_pointing_planar": 1e3 * limits.outer_planar,
+            "outer_pointing": 1e3 * limits.outer if isfinite(limits.outer) else None,
+            "outer_pointing_planar": None if limits.outer_planar is None else 1e3 * limits.outer_planar,
         },
         "contact_ratio": analysis.contact_ratio,
         "backlash_um": {"smallest": 1e6 * analysis.backlash.min(), "largest": 1e6 * analysis.backlash.max()},
@@ -177,7 +179,9 @@ def _gap(gap: Gap) -> dict[str, Any]:
 
 
 def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, Array]:
-    """Return point grids of the right flanks and fillets, in the body frames.
+    """Return point grids of the pinion's right flank and fillet and the gear's left ones, in the body frames.
+
+    The gear's are in a mirror x -> -x, see `face_gear`.
 
     Parameters
     ----------
@@ -192,19 +196,20 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
     -------
     dict of (profile, width, 3) arrays
         Points, m: `pinion_flank`, `pinion_fillet`, `gear_flank`, `gear_fillet`, and `pinion_section` (n,
-        2), the outline of half a tooth in (x, -z).
+        2), the outline of half a tooth in (x, -z), in the middle of the pinion's face.
     """
     half = design.pinion.width / 2
-    y = np.linspace(design.mean_radius - half, design.mean_radius + half, width)[None, :]
-    roll = np.linspace(design.pinion_tip_roll, pinion.junction_roll(design), profile)[:, None]
-    gamma = np.linspace(design.pressure_angle, np.pi / 2, profile)[:, None]
+    y = np.linspace(design.middle - half, design.middle + half, width)
+    roll = np.linspace(*pinion.roll_ends(design, y)[::-1], num=profile)
+    gamma = np.linspace(design.transverse_pressure_angle, np.pi / 2, profile)[:, None]
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, width)[None, :]
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    gear_roll = top + np.linspace(0, 1, profile)[:, None] * (design.shaper_tip_roll - top)
+    top, _ = face_gear.tip_parameters(design, radius)
+    end, _ = face_gear.end_parameters(design, radius)
+    gear_roll = top + np.linspace(0, 1, profile)[:, None] * (end - top)
     slopes = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0, 1, profile)[:, None])
     return {
-        "pinion_flank": pinion.cartesian(*pinion.involute_point(design, roll), y),
-        "pinion_fillet": pinion.cartesian(*pinion.trochoid_point(design, gamma), y),
+        "pinion_flank": pinion.cartesian(*pinion.involute_point(design, roll, y), y),
+        "pinion_fillet": pinion.cartesian(*pinion.trochoid_point(design, gamma, y), y),
         "gear_flank": face_gear.flank_point(design, gear_roll, face_gear.psi_at(design, radius, gear_roll)),
         "gear_fillet": face_gear.cylindrical(
             radius, *face_gear_fillet.fillet_section(design, radius, slopes)

@@ -29,37 +29,34 @@ Vector = tuple[float, float, float]
 X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True)
-class PinionPose:
-    """Where the pinion stands: errors of assembly, and by how much it is outwards along its own axis (m)."""
+def posed_frame(
+    errors: AssemblyErrors, nominal: RelativeMotion, middle: float
+) -> tuple[RelativeMotion, Vector]:
+    """Return the motion with the assembled shaft angle, and where the middle of the pinion's face stands.
 
-    errors: AssemblyErrors = NOMINAL
-    outwards: float = 0.0
+    Parameters
+    ----------
+    errors : AssemblyErrors
+        Errors of assembly.
+    nominal : RelativeMotion
+        Motion of the pinion at its nominal place.
+    middle : float
+        Place y of the middle of the pinion's face, m.
 
-    def frame(self, nominal: RelativeMotion, middle: float) -> tuple[RelativeMotion, Vector]:
-        """Return the motion with the pose's shaft angle, and where the middle of the pinion's face stands.
-
-        Parameters
-        ----------
-        nominal : RelativeMotion
-            Motion of the pinion at its nominal place.
-        middle : float
-            Place y of the middle of the pinion's face, m.
-
-        Returns
-        -------
-        tuple of RelativeMotion and tuple[float, float, float]
-            The motion, and the middle's place in the mesh frame, m.
-        """
-        errors, w, posed_motion = self.errors, self.outwards, nominal
-        if errors.shaft_angle_error != 0.0:
-            angle = nominal.shaft_angle + errors.shaft_angle_error
-            posed_motion = RelativeMotion(nominal.ratio, angle, nominal.offset)
-        return posed_motion, (
-            nominal.offset + errors.offset,
-            middle * nominal.sine + w * posed_motion.sine,
-            errors.gear_axial - middle * nominal.cosine - w * posed_motion.cosine,
-        )
+    Returns
+    -------
+    tuple of RelativeMotion and tuple[float, float, float]
+        The motion, and the middle's place in the mesh frame, m.
+    """
+    w, posed_motion = errors.pinion_axial, nominal
+    if errors.shaft_angle_error != 0.0:
+        angle = nominal.shaft_angle + errors.shaft_angle_error
+        posed_motion = RelativeMotion(nominal.ratio, angle, nominal.offset)
+    return posed_motion, (
+        nominal.offset + errors.offset,
+        middle * nominal.sine + w * posed_motion.sine,
+        errors.gear_axial - middle * nominal.cosine - w * posed_motion.cosine,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +91,8 @@ class ContactLine:
 
     Attributes
     ----------
-    gear, helicoid, motion, pose
-        Flanks of gear and pinion, their nominal motion, and where the pinion stands.
+    gear, helicoid, motion, errors
+        Flanks of gear and pinion, their nominal motion, and the errors of assembly.
     psi, turn
         Slope of the normal on the gear, and turn e of the line about the gear's axis (rad).
     transmission_error
@@ -113,7 +110,7 @@ class ContactLine:
     gear: GearFlank
     helicoid: Helicoid
     motion: RelativeMotion
-    pose: PinionPose
+    errors: AssemblyErrors
     psi: float
     turn: float
     transmission_error: float
@@ -125,8 +122,8 @@ class ContactLine:
 
     @cached_property
     def posed_frame(self) -> tuple[RelativeMotion, Vector]:
-        """`PinionPose.frame` of this line: motion with the posed shaft angle, and the face's middle (m)."""
-        return self.pose.frame(self.motion, self.helicoid.middle)
+        """`posed_frame` of this line: motion with the assembled shaft angle, and the face's middle (m)."""
+        return posed_frame(self.errors, self.motion, self.helicoid.middle)
 
     @cached_property
     def base_pitch(self) -> float:
@@ -236,10 +233,10 @@ class ContactLine:
         Returns
         -------
         tuple of (4,) arrays
-            Derivatives of transmission error and of `pinion_place`, each by offset, axial shift, error of
-            the shaft angle and the pinion's place outwards, m/m and m/rad.
+            Derivatives of transmission error and of `pinion_place`, each by offset, axial shift of the gear,
+            error of the shaft angle and axial shift of the pinion, m/m and m/rad.
         """
-        side, eta, outwards = self.helicoid.side, self.helicoid.sine, self.pose.outwards
+        side, eta, outwards = self.helicoid.side, self.helicoid.sine, self.errors.pinion_axial
         motion, middle = self.posed_frame
         axis, up = (0.0, motion.sine, -motion.cosine), (0.0, motion.cosine, motion.sine)
         parts = self.gear.line_components(cos(self.psi), sin(self.psi))
@@ -278,8 +275,8 @@ class ContactLine:
         return parts @ self.posed_frame[0].basis
 
 
-def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None) -> ContactLine | None:
-    """Compute the line of unloaded contact of a flank, continued beyond its edges, in a pose.
+def contact_line(family: ToothFamily, side: int, errors: AssemblyErrors = NOMINAL) -> ContactLine | None:
+    """Compute the line of unloaded contact of a flank, continued beyond its edges, in an assembly.
 
     Parameters
     ----------
@@ -287,8 +284,8 @@ def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None)
         Pair of gears.
     side : int
         Sign of the flank: +1 drive, -1 coast.
-    pose : PinionPose, optional
-        Where the pinion stands; the nominal place if None.
+    errors : AssemblyErrors
+        Errors of assembly; none by default.
 
     Returns
     -------
@@ -297,11 +294,11 @@ def contact_line(family: ToothFamily, side: int, pose: PinionPose | None = None)
         along lines (as many teeth of the shaper as of the pinion) that an error turns into an edge.
     """
     helicoid = family.pinion_flanks[0 if side > 0 else 1]
-    return find_line(gear_flank(family, side), helicoid, family.motion, pose or PinionPose())
+    return find_line(gear_flank(family, side), helicoid, family.motion, errors)
 
 
 def find_line(
-    flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose
+    flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, errors: AssemblyErrors
 ) -> ContactLine | None:
     """Compute `contact_line` from the flanks themselves: solve for slope and turn, then `place_line`.
 
@@ -313,28 +310,34 @@ def find_line(
         Flank of the pinion.
     nominal : RelativeMotion
         Motion of the pinion at its nominal place.
-    pose : PinionPose
-        Where the pinion stands.
+    errors : AssemblyErrors
+        Errors of assembly.
 
     Returns
     -------
     ContactLine, optional
         The line; None as `contact_line` says.
     """
-    if flank.lift <= 0.0 and pose.errors != NOMINAL:
+    is_displaced = (errors.offset, errors.shaft_angle_error, errors.gear_axial) != (0.0, 0.0, 0.0)
+    if flank.lift <= 0.0 and is_displaced:
         return None
     solution: tuple[float, float] | None = helicoid.pressure_angle, 0.0
-    if pose.errors != NOMINAL:
-        motion, middle = pose.frame(nominal, helicoid.middle)
+    if is_displaced:
+        motion, middle = posed_frame(errors, nominal, helicoid.middle)
         axis = (0.0, motion.sine, -motion.cosine)
         solution = _solve(flank, helicoid, axis, middle, helicoid.pressure_angle)
-    return None if solution is None else place_line(flank, helicoid, nominal, pose, *solution)
+    return None if solution is None else place_line(flank, helicoid, nominal, errors, *solution)
 
 
 def place_line(
-    flank: GearFlank, helicoid: Helicoid, nominal: RelativeMotion, pose: PinionPose, psi: float, turn: float
+    flank: GearFlank,
+    helicoid: Helicoid,
+    nominal: RelativeMotion,
+    errors: AssemblyErrors,
+    psi: float,
+    turn: float,
 ) -> ContactLine:
-    """Compute all numbers of the contact line in a pose from its known slope and turn.
+    """Compute all numbers of the contact line in an assembly from its known slope and turn.
 
     Parameters
     ----------
@@ -344,8 +347,8 @@ def place_line(
         Flank of the pinion.
     nominal : RelativeMotion
         Motion of the pinion at its nominal place.
-    pose : PinionPose
-        Where the pinion stands.
+    errors : AssemblyErrors
+        Errors of assembly.
     psi : float
         Slope of the line, rad.
     turn : float
@@ -357,7 +360,7 @@ def place_line(
         The line.
     """
     side = helicoid.side
-    motion, middle = pose.frame(nominal, helicoid.middle)
+    motion, middle = posed_frame(errors, nominal, helicoid.middle)
     axis = (0.0, motion.sine, -motion.cosine)
     parts = flank.line_components(cos(psi), sin(psi))
     foot, normal = _turn_back(parts[0:3], turn), _turn_back(parts[6:9], turn)
@@ -374,7 +377,7 @@ def place_line(
         gear=flank,
         helicoid=helicoid,
         motion=nominal,
-        pose=pose,
+        errors=errors,
         psi=psi,
         turn=turn,
         transmission_error=angle / nominal.ratio * helicoid.base_radius * helicoid.cosine,

@@ -222,7 +222,8 @@ def _involute_start(family: ToothFamily, side: int) -> float:
 
     psi = np.linspace(STEEPEST, 1e-9, SAMPLES)
     depth = below(psi)
-    changes = np.flatnonzero(np.sign(depth[1:]) != np.sign(depth[:-1]))
+    # outside an inner limit feet lie above the tip surface; far out they may fall below it again
+    changes = np.flatnonzero((depth[:-1] < 0.0) & (depth[1:] >= 0.0))
     radii = []
     for change in changes:
         root = brentq(lambda at: float(below(at)), psi[change + 1], psi[change], xtol=ROUNDING)

@@ -15,7 +15,7 @@ class Relief:
     Tip, root and end relief measure from an end of the flank inwards: the full amount holds within `start` of
     the end and falls linearly to zero over the next `length`. Crownings measure from a middle: nothing within
     `start`, then a parabola reaching `amount` after `length`. Across the pinion's profile lengths are roll
-    lengths along the line of action, across the gear's they are depths below the tip plane.
+    lengths in the transverse section, across the gear's they are depths below the tip surface.
     """
 
     amount: float = 0.0
@@ -27,9 +27,9 @@ class Relief:
 class DeviationGrid:
     """Deviations (m) from a nominal flank on a grid of places, along its outward normal, material positive.
 
-    face: of the pinion from its middle outwards, of the face gear the radius (m); profile: of the pinion the
-    length of roll r_b th, of the face gear the depth below the tip plane (m); both rise. deviation: one row
-    for each place along the face.
+    face: of the pinion along its axis from the middle of the face outwards, of the face gear the radius (m);
+    profile: of the pinion the transverse length of roll r_b th, of the face gear the depth below the tip
+    surface along its axis (m); both rise. deviation: one row for each place along the face.
     """
 
     face: tuple[float, ...]
@@ -70,7 +70,7 @@ class GearModifications:
     `facegear.teeth.modifications`.
 
     lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m)
-    at the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip,
+    at the tip surface, added as far below the datum surface. bias: amount (m) at the outer end of the tip,
     with the sign of the product of both.
     """
 

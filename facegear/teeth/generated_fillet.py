@@ -242,8 +242,7 @@ class GearFillet:
             Where the fillet does not reach the radius.
         """
         radius, part = np.broadcast_arrays(np.asarray(radius, float), np.asarray(part, float))
-        base_depth = self.centre_radius - self.lift
-        y = (radius + base_depth * self.motion.cosine) / self.motion.sine
+        y = (radius + (self.centre_radius - self.lift) * self.motion.cosine) / self.motion.sine
         step = np.full(radius.shape, np.inf)
         for _ in range(STEPS):
             points = self._at(y, part)
@@ -284,7 +283,8 @@ class GearFillet:
             Where the fillet has no such point.
         """
         radius, psi = np.broadcast_arrays(np.asarray(radius, float), np.asarray(psi, float))
-        y, first = radius, self.shaper.pressure_angle
+        y = (radius + (self.centre_radius - self.lift) * self.motion.cosine) / self.motion.sine
+        first = self.shaper.pressure_angle
         angle = np.clip((psi - first) / (np.pi / 2 - first), 0.0, 1.0) * self.last_angle(y)
         for _ in range(STEPS):
             points = self.generate(y, angle)

@@ -1,8 +1,11 @@
-"""Radial limits of a face gear's teeth: inner radius from undercut, outer radius from pointing."""
+"""Radial limits of a face gear's teeth: inner radius from undercut, outer radius from pointing.
+
+Spur teeth take them from the same surfaces as all others (`family_range`), with brackets known beforehand.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import acos, atan, cos, hypot, pi, sin
+from math import acos, atan, cos, hypot, pi, sin, sqrt
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -10,6 +13,7 @@ from facegear.errors import GeometryError, NotConverged
 from facegear.teeth import face_gear, face_gear_fillet
 from facegear.teeth.design import PairDesign
 from facegear.teeth.family_limits import singular_quadratic
+from facegear.teeth.family_range import design_limits, inner_reason, radii_with_lands
 from facegear.teeth.generated_flank import gear_flank
 
 ROUNDING = 1e-15
@@ -37,11 +41,16 @@ class FaceRange:
 
 @dataclass(frozen=True)
 class RadiusLimits:
-    """Inner (undercut) and outer (pointing) gear radii in m; planar: the section taken as a straight rack."""
+    """Inner (undercut) and outer (pointing) gear radii in m, the second infinite where teeth are not pointed.
+
+    outer_planar: of spur teeth the pointing radius with the section taken as a straight rack. inner_reason:
+    what limits teeth that are not spur inside, with flank and helpful key.
+    """
 
     inner: float
     outer: float
-    outer_planar: float
+    outer_planar: float | None = None
+    inner_reason: str = "undercut"
 
 
 def radius_limits(design: PairDesign) -> RadiusLimits:
@@ -49,7 +58,8 @@ def radius_limits(design: PairDesign) -> RadiusLimits:
     pressure angle.
 
     Undercut: the singular line meets the end of the shaper's involute. Pointing: the two flanks meet on the
-    tip plane.
+    tip surface. Teeth that are not spur are limited by either flank, and inside also by a flank's height and
+    by the start of the shaper's involute.
 
     Parameters
     ----------
@@ -64,14 +74,20 @@ def radius_limits(design: PairDesign) -> RadiusLimits:
     Raises
     ------
     GeometryError
-        If the flanks meet on the tip plane at every radius.
+        If the flanks meet on the tip surface at every radius, or there is no flank at all.
     """
+    if not design.is_spur:
+        limits = design_limits(design)
+        return RadiusLimits(limits.inner[0], limits.pointing, inner_reason=inner_reason(limits))
     return RadiusLimits(undercut_radius(design), *_pointing_radii(design))
 
 
 def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
-    """Compute between which radii teeth have a tip land and a fillet of THINNEST_LAND; the face's own
-    radii do not enter.
+    """Compute between which radii teeth have a tip land, a root land and a fillet; the face's own radii do
+    not enter.
+
+    Tip lands are at least THINNEST_LAND wide, as fillets of spur teeth; root lands and fillets of others at
+    least THINNEST_ROOT of `facegear.teeth.family_range`.
 
     Parameters
     ----------
@@ -90,6 +106,10 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
     GeometryError
         If there is no such place.
     """
+    if not design.is_spur:
+        lands = radii_with_lands(design, design_limits(design), THINNEST_LAND * design.module)
+        start, last, start_reason, last_reason = lands
+        return _wide_face(design, FaceRange(start, last, start_reason or limits.inner_reason, last_reason))
     tip_undercut = tip_plane_radius(design)
     inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
     land = _radii_with_land(design, inner, limits.outer) if limits.outer > inner else None
@@ -104,8 +124,12 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
         reason = "the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_modules does"
         candidates.append((last, reason))
     outer, outer_reason = min(candidates)
-    face = FaceRange(inner, outer, inner_reason, outer_reason)
-    if outer - inner < 0.5 * design.module:
+    return _wide_face(design, FaceRange(inner, outer, inner_reason, outer_reason))
+
+
+def _wide_face(design: PairDesign, face: FaceRange) -> FaceRange:
+    """Return a range if it leaves half a module of face, else raise GeometryError."""
+    if face.outer - face.inner < 0.5 * design.module:
         raise _no_face(design, f"less than half a module of face is left {face}")
     return face
 
@@ -154,12 +178,12 @@ def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low:
 
 def _land_left(design: PairDesign, radius: float) -> float:
     """Return the width (m) of the tip land at a gear radius (m), less the thinnest allowed."""
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll, psi = face_gear.tip_parameters(design, radius)
     return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
 
 
 def sharpest_fillet_radius(design: PairDesign) -> float:
-    """Compute the gear radius at which the centre of the shaper's tip rounding rolls on the gear's pitch
+    """Compute the gear radius at which the centre of a spur shaper's tip rounding rolls on the gear's pitch
     surface.
 
     The tip turns about that centre and leaves nothing but its own rounding; a sharp one leaves a corner.
@@ -189,7 +213,7 @@ def _fillet_left(design: PairDesign, radius: float) -> float:
 
 
 def undercut_radius(design: PairDesign) -> float:
-    """Compute the smallest gear radius at which the shaper's tip does not cut into the flank.
+    """Compute the smallest gear radius at which a spur shaper's tip does not cut into the flank.
 
     Parameters
     ----------
@@ -215,8 +239,8 @@ def undercut_radius(design: PairDesign) -> float:
 
 
 def tip_plane_radius(design: PairDesign) -> float:
-    """Compute the smallest gear radius at which the flank reaches the tip plane (the envelope turns back
-    there).
+    """Compute the smallest gear radius at which the flank of spur teeth reaches the tip plane (the envelope
+    turns back there).
 
     Parameters
     ----------
@@ -228,7 +252,7 @@ def tip_plane_radius(design: PairDesign) -> float:
     float
         m.
     """
-    flank, height = gear_flank(design.mirror_family, -1), design.gear_tip_plane
+    flank, height = gear_flank(design.mirror_family, -1), _tip_plane(design)
     psi = brentq(lambda at: flank.growth_at_height(at, height)[2], 1e-4, 1.0, xtol=ROUNDING)
     return flank.growth_at_height(psi, height)[1]
 
@@ -238,7 +262,8 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
     straight rack.
     """
     space = design.shaper_half_space_angle
-    height = (design.shaper_lift - design.gear_tip_plane) / design.shaper_base_radius
+    tip_plane = _tip_plane(design)
+    height = (design.shaper_lift - tip_plane) / design.shaper_base_radius
 
     def planar(psi: float) -> float:
         """Return a measure (rad) of a straight rack's tooth at a slope psi (rad), negative if its tip has
@@ -250,7 +275,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
 
     def exact(psi: float) -> float:
         """Return x / y of the flank on the tip plane at a slope psi (rad), 0 where the tooth is pointed."""
-        point = flank.point(psi, flank.growth_at_height(psi, design.gear_tip_plane)[0])
+        point = flank.point(psi, flank.growth_at_height(psi, tip_plane)[0])
         return float(point[0] / point[1])
 
     thickest = acos(1 / height) if height > 1 else 1e-6
@@ -261,8 +286,13 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         )
     planar_psi = brentq(planar, thickest, pi / 2, xtol=ROUNDING)
     exact_psi = _root_near(exact, planar_psi)
-    exact_radius = flank.growth_at_height(exact_psi, design.gear_tip_plane)[1]
+    exact_radius = flank.growth_at_height(exact_psi, tip_plane)[1]
     return exact_radius, design.gear_base_radius / cos(planar_psi)
+
+
+def _tip_plane(design: PairDesign) -> float:
+    """Return the height (m) of a spur gear's flat tip."""
+    return float(face_gear.tip_height(design, design.gear_pitch_radius))
 
 
 def _root_near(function: Callable[[float], float], guess: float) -> float:
@@ -277,3 +307,43 @@ def _root_near(function: Callable[[float], float], guess: float) -> float:
             return float(brentq(function, low, high, xtol=ROUNDING))
         width *= 2
     raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")
+
+
+def pitch_line_radius(design: PairDesign, y: float) -> float:
+    """Compute the gear radius at a place of the pitch line, which lies in the pinion's pitch cylinder.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : float
+        Place along the pinion's axis, m.
+
+    Returns
+    -------
+    float
+        m; y itself where axes cross at 90 degrees.
+    """
+    motion = design.family.motion
+    return hypot(y * motion.sine - design.pinion_pitch_radius * motion.cosine, design.offset)
+
+
+def common_face(design: PairDesign) -> tuple[float, float]:
+    """Compute the ends, along the pinion's axis, of the part of the pitch line that both faces cover.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float]
+        Inner and outer end y, m.
+    """
+    motion, face, half = design.family.motion, design.face_gear, design.pinion.width / 2
+    first, last = (
+        (sqrt(radius**2 - design.offset**2) + design.pinion_pitch_radius * motion.cosine) / motion.sine
+        for radius in (face.inner_radius, face.outer_radius)
+    )
+    return max(first, design.middle - half), min(last, design.middle + half)

@@ -3,8 +3,8 @@
 Modifications and deviations of the face gear's flanks: material taken off along the normal, and the gap that
 this opens. Everything is for the flank that meets the pinion's right one: the left flank of tooth 0 in a
 mirror, where it stands as the right one does in the gear body frame (see `design`). A place on the flank is
-its gear radius and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the
-fillet, the amount at the edge stands.
+its gear radius and its depth below the tip surface at that radius, along the gear's axis. Beyond the edges of
+the flank, on the tip land and in the fillet, the amount at the edge stands.
 """
 
 from functools import lru_cache
@@ -134,7 +134,7 @@ GRAZING = 0.1
 
 @lru_cache(maxsize=16)
 def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
-    """Return the depth below the tip plane of the flank's end at the fillet.
+    """Return the depth below the tip surface of the flank's end at the fillet.
 
     Parameters
     ----------
@@ -148,7 +148,26 @@ def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     """
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-    return scipy.interpolate.CubicSpline(radius, design.gear_tip_plane - flank_end(design, radius)[..., 2])
+    depth = face_gear.tip_height(design, radius) - flank_end(design, radius)[..., 2]
+    return scipy.interpolate.CubicSpline(radius, depth)
+
+
+def depth_below_tip(design: PairDesign, points: Array) -> Array:
+    """Compute the depth of points below the gear's tip surface at their radius, along the gear's axis.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : (..., 3) array
+        Points in the gear's body frame, m.
+
+    Returns
+    -------
+    (...) array
+        m.
+    """
+    return face_gear.tip_height(design, np.hypot(points[..., 0], points[..., 1])) - points[..., 2]
 
 
 def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
@@ -166,15 +185,14 @@ def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
     (..., 3) array
         m.
     """
-    roll = design.shaper_tip_roll
-    return face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
+    return face_gear.flank_point(design, *face_gear.end_parameters(design, radius))
 
 
 def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
     """Compute the depth of material that modifications and deviations take off the gear along the normal.
 
-    Tip relief is measured from the tip plane, root relief from where the flank ends, end relief from
-    either end of the face, crownings from the middle of the face and from the pitch plane.
+    Tip relief is measured from the tip surface, root relief from where the flank ends, end relief from
+    either end of the face, crownings from the middle of the face and from the datum surface.
 
     Parameters
     ----------
@@ -183,7 +201,7 @@ def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Ar
     radius : (...) array_like
         Gear radius, m.
     depth : (...) array_like
-        Depth below the tip plane, m.
+        Depth below the tip surface along the gear's axis, m.
 
     Returns
     -------
@@ -195,13 +213,14 @@ def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Ar
     deepest: Array = flank_depth(design)(at)
     below: Array = np.clip(np.asarray(depth, float), 0.0, deepest)
     along = (at - design.mean_radius) / (0.5 * (gear.outer_radius - gear.inner_radius))
-    across = 1.0 - below / gear.addendum
+    pitch_depth = face_gear.pitch_depth(design)
+    across = 1.0 - below / pitch_depth
     depth_removed: Array = (
         linear(modifications.tip_relief, below)
         + linear(modifications.root_relief, deepest - below)
         + linear(modifications.end_relief, np.minimum(at - gear.inner_radius, gear.outer_radius - at))
         + parabola(modifications.lead_crowning, np.abs(at - design.mean_radius))
-        + parabola(modifications.profile_crowning, np.abs(below - gear.addendum))
+        + parabola(modifications.profile_crowning, np.abs(below - pitch_depth))
         + modifications.lead_slope * along
         + modifications.profile_slope * across
         + modifications.bias * along * across
@@ -248,9 +267,8 @@ def flank_as_made(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     points = face_gear.flank_point(design, roll, psi)
     if as_generated(design):
         return points
-    depth_removed = removed_depth(
-        design, np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2]
-    )
+    radius = np.hypot(points[..., 0], points[..., 1])
+    depth_removed = removed_depth(design, radius, depth_below_tip(design, points))
     return points - depth_removed[..., None] * face_gear.flank_normal(design, roll, psi)
 
 
@@ -269,7 +287,7 @@ def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
     (..., 3) array
         m.
     """
-    return flank_as_made(design, *face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane))
+    return flank_as_made(design, *face_gear.tip_parameters(design, radius))
 
 
 def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
@@ -310,12 +328,12 @@ def added_curvatures(design: PairDesign, points: Array) -> tuple[Array, Array, A
     Returns
     -------
     tuple of (...) arrays
-        Along the depth below the tip plane, along the gear radius, and their twist, 1/m.
+        Along the depth below the tip surface, along the gear radius, and their twist, 1/m.
     """
     modifications, grid = design.face_gear.modifications, design.face_gear.flanks.left
-    radius, depth = np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2]
+    radius, depth = np.hypot(points[..., 0], points[..., 1]), depth_below_tip(design, points)
     return (
-        parabola_curvature(modifications.profile_crowning, np.abs(depth - design.face_gear.addendum))
+        parabola_curvature(modifications.profile_crowning, np.abs(depth - face_gear.pitch_depth(design)))
         - derivative(grid, radius, depth, (0, 2)),
         parabola_curvature(modifications.lead_crowning, np.abs(radius - design.mean_radius))
         - derivative(grid, radius, depth, (2, 0)),
@@ -347,8 +365,9 @@ def gap_opening(design: PairDesign, points: Array, directions: Array) -> Array:
     ends = np.flatnonzero(np.isfinite(points).all(axis=-1))
     gear, points = design.face_gear, points[ends]
     radius = np.clip(np.hypot(points[:, 0], points[:, 1]), gear.inner_radius, gear.outer_radius)
-    depth = np.clip(design.gear_tip_plane - points[:, 2], 0.0, flank_depth(design)(radius))
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
+    tip = face_gear.tip_height(design, radius)
+    depth = np.clip(tip - points[:, 2], 0.0, flank_depth(design)(radius))
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, tip - depth)
     normal = face_gear.flank_normal(design, roll, psi)
     cosine = np.maximum(-np.einsum("ij,ij->i", normal, directions[ends]), GRAZING)
     opening[ends] = removed_depth(design, radius, depth) / cosine

@@ -1,8 +1,10 @@
-"""The pinion's section: involute, tip chamfer, the root trochoid cut by a rack with a rounded tip, reliefs.
+"""The pinion's tooth section by section: involute, tip, the root cut by a rack with a rounded tip, reliefs.
 
-Everything is for the right flank of tooth 0 in the pinion body frame (see `design`): polar angle a from the
-tooth's centre line, so x = r sin a, z = -r cos a. The left flank is the mirror image a -> -a.
-Involute and trochoid are sections of the right flank and root of the family, see `helicoid`.
+Everything is for the right flank of tooth 0 in the pinion body frame (see `design`), in the section at a
+place y along the axis: polar angle a from the half plane of the tooth's middle, so x = r sin a, z = -r cos a.
+The left flank is the right one of `placement.mirror_teeth`, seen in a mirror a -> -a. Sections of spur teeth
+are alike; a helix turns them, a taper changes them. The roll angle is the transverse length of roll over the
+base radius. Involute and root are sections of the surfaces of `helicoid`.
 """
 
 import numpy as np
@@ -15,7 +17,7 @@ from facegear.teeth.helicoid import PinionFlank, pinion_fillet, pinion_start
 from facegear.teeth.modifications import deviation
 
 
-def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
+def involute_point(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
     """Compute points of the right flank's involute in polar coordinates of the section.
 
     Parameters
@@ -24,19 +26,19 @@ def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
         Pair of gears.
     roll : (...) array_like
         Roll angle, rad.
+    y : (...) array_like
+        Axial position, m.
 
     Returns
     -------
     tuple of (...) arrays
         Radius, m, and polar angle, rad.
     """
-    return _polar(
-        _flank(design).point(design.pinion_base_radius * np.asarray(roll, float), design.mean_radius)
-    )
+    return _polar(pinion_flank(design).point(design.pinion_base_radius * np.asarray(roll, float), y))
 
 
-def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
-    """Compute unit normals of the right flank's involute, out of the tooth.
+def involute_normal(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
+    """Compute unit normals of the right flank, out of the tooth, in the pinion's body frame.
 
     Parameters
     ----------
@@ -44,84 +46,156 @@ def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
         Pair of gears.
     roll : (...) array_like
         Roll angle, rad.
+    y : (...) array_like
+        Axial position, m.
 
     Returns
     -------
-    tuple of (...) arrays
-        Components x and z, dimensionless.
+    (..., 3) array
+        Unit vectors, dimensionless.
     """
-    length = design.pinion_base_radius * np.asarray(roll, float)
-    normal = _flank(design).normal(length, design.mean_radius)
-    return normal[..., 0], normal[..., 2]
+    return pinion_flank(design).normal(design.pinion_base_radius * np.asarray(roll, float), y)
 
 
-def junction_roll(design: PairDesign) -> float:
-    """Compute the roll angle where involute and trochoid meet.
+def junction_roll(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the roll angle where involute and root fillet meet.
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
+    y : (...) array_like
+        Axial position, m.
 
     Returns
     -------
-    float
-        rad; negative when the rack undercuts the pinion.
+    (...) array
+        rad; negative when the rack undercuts the pinion. Only one number where teeth have no taper.
     """
-    return float(pinion_start(design.family, 1, design.mean_radius)) / design.pinion_base_radius
+    y = design.middle if design.taper_angle == 0.0 else y
+    return np.asarray(pinion_start(design.family, 1, y)) / design.pinion_base_radius
 
 
-def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
-    """Compute points of the root trochoid of the right side in polar coordinates of the section.
+def tip_radius(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the radius of the pinion's tip, chamfer not taken off.
 
-    gamma runs from the pressure angle (the junction with the involute) to pi/2 (the root circle).
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        m.
+    """
+    return design.pinion_tip_radius + (np.asarray(y, float) - design.middle) * design.family.taper
+
+
+def root_radius(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the radius of the pinion's root land.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        m.
+    """
+    return design.pinion_root_radius + (np.asarray(y, float) - design.middle) * design.family.taper
+
+
+def tip_roll(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the roll angle where the involute ends: at the tip or at the chamfer.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        rad. Only one number where teeth have no taper.
+    """
+    if design.taper_angle == 0.0:
+        return np.asarray(design.pinion_tip_roll)
+    ratio = (tip_radius(design, y) - design.pinion.tip_chamfer) / design.pinion_base_radius
+    return np.sqrt(np.maximum(ratio**2 - 1, 0.0))
+
+
+def roll_ends(design: PairDesign, y: ArrayLike) -> tuple[Array, Array]:
+    """Compute the roll angles where the involute begins and ends, see `junction_roll` and `tip_roll`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Smallest and largest roll angle, rad.
+    """
+    shape = np.shape(y)
+    return np.broadcast_to(junction_roll(design, y), shape), np.broadcast_to(tip_roll(design, y), shape)
+
+
+def trochoid_point(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+    """Compute points of the root fillet of the right side in polar coordinates of the section.
+
+    gamma runs from the transverse pressure angle (the junction with the involute) to pi/2 (the root land).
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     gamma : (...) array_like
-        Slope of the normal to the rack's pitch line, rad.
+        Slope of the normal to the rack's pitch line in the transverse projection, rad.
+    y : (...) array_like
+        Axial position, m.
 
     Returns
     -------
     tuple of (...) arrays
         Radius, m, and polar angle, rad.
     """
-    return _polar(pinion_fillet(design.family, 1).point(gamma, design.mean_radius))
+    return _polar(pinion_fillet(design.family, 1).point(gamma, y))
 
 
-def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
-    """Compute unit normals of the root trochoid of the right side, out of the material.
+def trochoid_normal(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> Array:
+    """Compute unit normals of the right side's root fillet, out of the material, in the pinion's body frame.
 
     Parameters
     ----------
     design : PairDesign
         Pair of gears.
     gamma : (...) array_like
-        Slope of the normal to the rack's pitch line, rad.
+        Slope of the normal to the rack's pitch line in the transverse projection, rad.
+    y : (...) array_like
+        Axial position, m.
 
     Returns
     -------
-    tuple of (...) arrays
-        Components x and z, dimensionless.
+    (..., 3) array
+        Unit vectors, dimensionless.
     """
-    normal = pinion_fillet(design.family, 1).normal(gamma, design.mean_radius)
-    return normal[..., 0], normal[..., 2]
+    return pinion_fillet(design.family, 1).normal(gamma, y)
 
 
-def _flank(design: PairDesign) -> PinionFlank:
-    """Return the pinion's right (drive) flank as a surface of `helicoid`."""
-    return PinionFlank(design.family.pinion_flanks[0])
-
-
-def _polar(points: Array) -> tuple[Array, Array]:
-    """Return radius (m) and polar angle (rad) from the tooth's centre line of body-frame points (..., 3)."""
-    return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
-
-
-def tip_half_angle(design: PairDesign) -> float:
-    """Compute half the angle of the tip land about the axis, chamfer taken off.
+def pinion_flank(design: PairDesign) -> PinionFlank:
+    """Return the pinion's right (drive) flank as a surface with parameters length of roll and y.
 
     Parameters
     ----------
@@ -130,15 +204,39 @@ def tip_half_angle(design: PairDesign) -> float:
 
     Returns
     -------
-    float
-        rad; negative for a pointed tooth.
+    PinionFlank
+        The flank, without modifications.
     """
-    _, angle = involute_point(design, design.pinion_tip_roll)
-    return float(angle) - design.pinion.tip_chamfer / design.pinion_tip_radius
+    return PinionFlank(design.family.pinion_flanks[0])
+
+
+def _polar(points: Array) -> tuple[Array, Array]:
+    """Return radius (m) and polar angle (rad) from the tooth's middle of body-frame points (..., 3)."""
+    return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
+
+
+def tip_half_angle(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the polar angle at which the tip land ends on the right side, chamfer taken off.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        rad; a tooth is pointed where the angles of the design and of `placement.mirror_teeth` add up to less
+        than 0.
+    """
+    _, angle = involute_point(design, tip_roll(design, y), y)
+    return angle - design.pinion.tip_chamfer / tip_radius(design, y)
 
 
 def root_half_angle(design: PairDesign) -> float:
-    """Compute half the angle of the root land about the axis.
+    """Compute half the angle of the root land about the axis, the same in every section.
 
     Parameters
     ----------
@@ -150,7 +248,28 @@ def root_half_angle(design: PairDesign) -> float:
     float
         rad; negative when the rack's tip circles overlap.
     """
-    return pinion_fillet(design.family, 1).lateral / design.pinion_pitch_radius
+    lateral = [pinion_fillet(design.family, side).lateral for side in (1, -1)]
+    return sum(lateral) / 2 / design.pinion_pitch_radius
+
+
+def root_angle(design: PairDesign, y: ArrayLike) -> Array:
+    """Compute the polar angle of the middle of the root land on the right side of the tooth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        rad; pi / N1 of symmetric teeth.
+    """
+    if design.is_symmetric:
+        return np.full(np.shape(y), np.pi / design.pinion.teeth)
+    return trochoid_point(design, np.pi / 2, y)[1] + root_half_angle(design)
 
 
 def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
@@ -197,12 +316,13 @@ def removed_depth(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
         m; negative where the right flank deviates towards more material.
     """
     part = design.pinion
-    reliefs = (part.tip_relief, linear), (part.root_relief, linear), (part.lead_crowning, parabola)
     roll, y = np.asarray(roll, float), np.asarray(y, float)
     depth = np.zeros(np.broadcast_shapes(roll.shape, y.shape))
-    for (relief, shape), distance in zip(reliefs, distances(design, roll, y), strict=True):
-        if relief.amount != 0.0:
-            depth += shape(relief, distance)
+    reliefs = (part.tip_relief, linear), (part.root_relief, linear), (part.lead_crowning, parabola)
+    if any(relief.amount != 0.0 for relief, _ in reliefs):
+        for (relief, shape), distance in zip(reliefs, distances(design, roll, y), strict=True):
+            if relief.amount != 0.0:
+                depth += shape(relief, distance)
     if part.flanks.right is None:
         return depth
     return depth - deviation(part.flanks.right, *deviation_place(design, roll, y))
@@ -223,14 +343,14 @@ def distances(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, 
     Returns
     -------
     tuple of (...) arrays
-        Length of roll below the tip, length of roll above the root's junction, and distance from the
-        middle of the face, m.
+        Transverse length of roll below the tip, that above the root's junction, both in the section of y, and
+        distance along the axis from the middle of the face, m.
     """
     base = design.pinion_base_radius
     return (
-        base * (design.pinion_tip_roll - roll),
-        base * (roll - junction_roll(design)),
-        abs(y - design.mean_radius),
+        base * (tip_roll(design, y) - roll),
+        base * (roll - junction_roll(design, y)),
+        abs(y - design.middle),
     )
 
 
@@ -249,7 +369,8 @@ def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[
     Returns
     -------
     tuple of (...) arrays
-        Distance along the face from its middle, and length of roll within the involute's ends, m.
+        Distance along the axis from the middle of the face, and transverse length of roll within the
+        involute's ends, m.
     """
-    on_flank = np.clip(np.asarray(roll, float), junction_roll(design), design.pinion_tip_roll)
-    return np.asarray(y, float) - design.mean_radius, design.pinion_base_radius * on_flank
+    on_flank = np.clip(np.asarray(roll, float), junction_roll(design, y), tip_roll(design, y))
+    return np.asarray(y, float) - design.middle, design.pinion_base_radius * on_flank

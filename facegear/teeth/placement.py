@@ -7,6 +7,7 @@ of a gear leads away from the pinion on either side. The back flank is the drive
 mirror, whose offset changes sign; what drives, turned half round, is the pinion's right flank again.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.flank_shapes import Flanks
 
 AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -1.0])}
 """Axes about which a positive turn moves the teeth in mesh towards +x, see `design`."""
@@ -375,8 +377,30 @@ def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
     return replace(drive_design, assembly=errors_at(design.assembly, gear, flank))
 
 
-def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
+def distinct_pairs(design: PairDesign, gears: Sequence[str] = GEARS) -> tuple[list[PairDesign], Integers]:
     """Return the pairs of both gears' both flanks without repetitions, so that each is computed once.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`; a missing one has the pairs of the other.
+
+    Returns
+    -------
+    tuple
+        The pairs, those of the first gear first, and the index of each flank's pair in them, (2, 2) by GEARS
+        and FLANKS.
+    """
+    present = [gear if gear in gears else gears[0] for gear in GEARS]
+    pairs = [pair_at(design, gear, flank) for gear in present for flank in FLANKS]
+    different = list(dict.fromkeys(pairs))
+    return different, np.array([different.index(pair) for pair in pairs]).reshape(len(GEARS), len(FLANKS))
+
+
+def nominal_teeth(design: PairDesign) -> PairDesign:
+    """Return the pair without what moves no node of its bodies: errors of assembly and deviations of flanks.
 
     Parameters
     ----------
@@ -385,9 +409,31 @@ def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
 
     Returns
     -------
-    tuple
-        The pairs, the design first, and the index of each flank's pair in them, (2, 2) by GEARS and FLANKS.
+    PairDesign
+        Pair by which bodies with the same nodes are known.
     """
-    pairs = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
-    different = list(dict.fromkeys(pairs))
-    return different, np.array([different.index(pair) for pair in pairs]).reshape(len(GEARS), len(FLANKS))
+    pinion, gear = design.pinion, design.face_gear
+    if pinion.flanks != Flanks() or gear.flanks != Flanks():
+        pinion, gear = replace(pinion, flanks=Flanks()), replace(gear, flanks=Flanks())
+    return replace(design, pinion=pinion, face_gear=gear, assembly=AssemblyErrors())
+
+
+def nominal_pairs(design: PairDesign, gears: Sequence[str] = GEARS) -> list[PairDesign]:
+    """Return the different pairs of bodies that both gears' both flanks need, the design's own first.
+
+    Teeth that are symmetric and meet two equal gears need one; the coast flanks of others are the drive
+    flanks of another pair, and so are those of a lower gear that differs from the upper one.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`.
+
+    Returns
+    -------
+    list[PairDesign]
+        Pairs by `nominal_teeth`, in the order in which `distinct_pairs` needs them.
+    """
+    return list(dict.fromkeys(nominal_teeth(pair) for pair in distinct_pairs(design, gears)[0]))

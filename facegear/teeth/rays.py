@@ -12,82 +12,101 @@ import numpy as np
 
 from facegear._kernels import flanks
 from facegear.arrays import AnyArray, Array, Mask
-from facegear.teeth import face_gear, face_gear_fillet
 from facegear.teeth.design import PairDesign, as_cut
+from facegear.teeth.generated_fillet import gear_fillet
+from facegear.teeth.generated_flank import gear_flank
+from facegear.teeth.tooth_family import ToothFamily
 
 SAMPLES = 25
 """Points of the sampled flank each way."""
+FILLET_HEIGHTS = 17
+"""Places of the fillet from which searches begin, as the kernel has them."""
+SAFETY, ROUNDING = 4.0, 1e-12
+"""Factor by which the tip edge may be farther from its parabola than at any sample, and rounding (rad)."""
+RIGHT = -1
+"""Sign of the flank that stands on the right of the gear's tooth."""
+
+
+class Shaper(NamedTuple):
+    """The shaper and its place against the gear, as the kernel of rays takes them (m, rad).
+
+    base: radius of its base cylinder. ratio: its tooth number over the gear's. phase: angle from the middle
+    of its space to the involute's start, at `middle`. sine: of its base helix, signed. middle: y of the
+    section that other numbers are for. lift, offset: of its axis. taper: growth of its tip's radius with y.
+    tip_centre, tip_rounding: distance of its tip rounding's centre from its axis, and that rounding's radius.
+    """
+
+    base: float
+    ratio: float
+    phase: float
+    sine: float
+    middle: float
+    lift: float
+    offset: float
+    shaft_sine: float
+    """Sine of the shaft angle."""
+    shaft_cosine: float
+    """Cosine of the shaft angle."""
+    taper: float
+    tip_centre: float
+    tip_rounding: float
+
+
+class Guess(NamedTuple):
+    """Where searches on a side begin, by the distance r (m) from a gear `radius` and the depth d (m) below
+    the tip. `roll` and `psi` (6,), rad, are the factors of 1, r, d, r squared, r d and d squared, for d up to
+    `depth`.
+    """
+
+    radius: float
+    depth: float
+    roll: Array
+    psi: Array
+    edge: Array
+    """Factors (3,) of the tip edge's gear angle (rad), of rising powers of r."""
+    edge_error: float
+    """Larger than any error of that angle, rad."""
+    fillet: Array
+    """Depths (FILLET_HEIGHTS,), m, at even steps of the fillet's angle at the radius."""
+
+
+class Side(NamedTuple):
+    """A right side of the tooth: the shaper that generates it, and where searches on it begin."""
+
+    shaper: Shaper
+    guess: Guess
+
+
+class Line(NamedTuple):
+    """A straight line: `height` (m) at the origin, and `slope`."""
+
+    height: float
+    slope: float
 
 
 class Blank(NamedTuple):
     """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`).
 
-    base, ratio, space, lift: see `face_gear.shaper_numbers`; tip_centre, tip_rounding, edge_start: see
-    `face_gear_fillet.tip_numbers`; tip_roll: where the shaper's involute ends (rad); inner, outer: radii
-    of the face (m); tip_plane, root_plane: heights z (m); root_start: gear angle from the tooth's middle
-    at which the root land begins (rad); pitch: angular pitch (rad).
+    flank: the side that is looked at. back: the other side, seen in a mirror. inner, outer: radii of the face
+    (m). tip, root: heights of the lands over gear radii. pitch: of teeth (rad). module: normal module (m).
     """
 
-    base: float
-    ratio: float
-    space: float
-    lift: float
-    tip_centre: float
-    tip_rounding: float
-    tip_roll: float
-    edge_start: float
+    flank: Side
+    back: Side
     inner: float
     outer: float
-    tip_plane: float
-    root_plane: float
-    root_start: float
+    tip: Line
+    root: Line
+    root_bulge: float
+    """Largest distance (m) of the root land from its line: 0 where it is a plane or a cone."""
     pitch: float
+    module: float
+    middle: Line
+    """x of the tooth's middle over y, m."""
     aside: float
-    """Largest distance from the tooth's middle plane, abs(x) in m, of points looked at."""
+    """Largest distance along x from the tooth's middle, m, of points looked at."""
     fillet_top: float
-    """Height (m) that no point of the fillet exceeds."""
-    fillet_start: float
-    """Slope psi (rad) that no normal of the fillet falls below."""
-
-
-def blank(design: PairDesign) -> Blank:
-    """Return the numbers of a design's face gear that the kernel of rays takes: shaper, radii, planes, edges.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-
-    Returns
-    -------
-    Blank
-        Numbers in m and rad.
-    """
-    gear, pitch = design.face_gear, 2 * pi / design.face_gear.teeth
-    radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-    starts = face_gear_fillet.fillet_start(design, radius)
-    tops = face_gear.flank_point(design, design.shaper_tip_roll, starts)[:, 2]
-    base, ratio, space, lift = face_gear.shaper_numbers(design)
-    centre, rounding, _, _, edge_start = face_gear_fillet.tip_numbers(design)
-    return Blank(
-        base=base,
-        ratio=ratio,
-        space=space,
-        lift=lift,
-        tip_centre=centre,
-        tip_rounding=rounding,
-        tip_roll=design.shaper_tip_roll,
-        edge_start=edge_start,
-        inner=gear.inner_radius,
-        outer=gear.outer_radius,
-        tip_plane=design.gear_tip_plane,
-        root_plane=design.gear_root_plane,
-        root_start=pitch / 2 - float(face_gear_fillet.root_half_angle(design)),
-        pitch=pitch,
-        aside=3 * design.module,
-        fillet_top=float(tops.max()) + 0.01 * design.module,
-        fillet_start=float(starts.min()),
-    )
+    """Height (m) over the tip that no point of the fillet exceeds; negative."""
 
 
 class FlankSample(NamedTuple):
@@ -124,30 +143,103 @@ def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
 @lru_cache(maxsize=16)
 def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
     """Return blank and sampled flank of a design without modifications and errors; cached by design."""
-    return blank(design), _flank_sample(design)
+    family, back_family = design.mirror_family, design.family
+    flank, back = _flank_sample(family), _flank_sample(back_family)
+    tip, radii = Line(float(family.gear_tip.height(0.0)), family.gear_tip.slope), flank.radii
+    fillet = gear_fillet(family, RIGHT)
+    bottom = fillet.y_at(radii, 1.0)
+    depths = fillet.generate(bottom, fillet.last_angle(bottom)).position[:, 2]
+    slope = float((depths[-1] - depths[0]) / (radii[-1] - radii[0]))
+    root = Line(float(depths[0] - slope * radii[0]), slope)
+    right, left = (sample.points.reshape(SAMPLES, SAMPLES, 3).mean(axis=1) for sample in (flank, back))
+    x, y = (right[:, 0] - left[:, 0]) / 2, (right[:, 1] + left[:, 1]) / 2
+    lean = float((x[-1] - x[0]) / (y[-1] - y[0]))
+    middle = Line(float(x[0] - lean * y[0]), lean)
+    starts = flank.points.reshape(SAMPLES, SAMPLES, 3)[:, -1, 2]
+    blank = Blank(
+        flank=_side(family, flank),
+        back=_side(back_family, back),
+        inner=family.inner_radius,
+        outer=family.outer_radius,
+        tip=tip,
+        root=root,
+        root_bulge=float(np.abs(depths - root.height - root.slope * radii).max()),
+        pitch=2 * pi / family.gear_teeth,
+        module=design.module,
+        middle=middle,
+        aside=3 * design.module + float(np.abs(x - middle.height - middle.slope * y).max()),
+        fillet_top=float((starts - tip.height - tip.slope * radii).max()) + 0.01 * design.module,
+    )
+    return blank, flank
 
 
-def _flank_sample(design: PairDesign) -> FlankSample:
-    """Sample the right flank on SAMPLES x SAMPLES points, gear radius by roll, from which searches along
-    rays begin.
+def _side(family: ToothFamily, sample: FlankSample) -> Side:
+    """Return the numbers of the right side of a family's gear, whose flank is sampled."""
+    flank, fillet = gear_flank(family, RIGHT), gear_fillet(family, RIGHT)
+    shaper, motion = flank.shaper, flank.motion
+    numbers = Shaper(
+        base=shaper.base_radius,
+        ratio=motion.ratio,
+        phase=shaper.phase,
+        sine=shaper.sine,
+        middle=shaper.middle,
+        lift=flank.lift,
+        offset=motion.offset,
+        shaft_sine=motion.sine,
+        shaft_cosine=motion.cosine,
+        taper=fillet.taper,
+        tip_centre=fillet.centre_radius,
+        tip_rounding=fillet.rounding,
+    )
+    return Side(numbers, _guess(family, sample))
+
+
+def _guess(family: ToothFamily, sample: FlankSample) -> Guess:
+    """Return where searches on a family's right side begin, whose flank is sampled."""
+    x, y, z = np.moveaxis(sample.points, -1, 0)
+    radius, fillet = np.hypot(x, y), gear_fillet(family, RIGHT)
+    center, depth = radius.mean(), family.gear_tip.height(radius) - z
+    along, down = (radius - center) / center, depth / center
+    terms = np.stack([np.ones_like(along), along, down, along**2, along * down, down**2], axis=-1)
+    powers = np.array([0.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    roll, psi = (np.linalg.lstsq(terms, values)[0] / center**powers for values in (sample.rolls, sample.psis))
+    angle, on_edge = np.arctan2(x, y).reshape(SAMPLES, SAMPLES)[:, 0], terms[::SAMPLES, [0, 1, 3]]
+    edge = np.linalg.lstsq(on_edge, angle)[0]
+    parts = np.linspace(0.0, 1.0, FILLET_HEIGHTS)
+    place = fillet.y_at(center, parts)
+    heights = fillet.generate(place, parts * fillet.last_angle(place)).position[:, 2]
+    return Guess(
+        radius=float(center),
+        depth=float(depth.max()),
+        roll=roll,
+        psi=psi,
+        edge=edge / center ** np.arange(3.0),
+        edge_error=SAFETY * float(np.abs(on_edge @ edge - angle).max()) + ROUNDING,
+        fillet=float(family.gear_tip.height(center)) - heights,
+    )
+
+
+def _flank_sample(family: ToothFamily) -> FlankSample:
+    """Sample the right flank of a family's gear on SAMPLES x SAMPLES points, gear radius by height, where
+    searches along rays begin.
     """
-    gear = design.face_gear
-    radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[:, None]
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    roll = top + np.linspace(0, 1, SAMPLES) * (design.shaper_tip_roll - top)
-    psi = face_gear.psi_at(design, radius, roll)
-    points = face_gear.flank_point(design, roll, psi)
+    flank, fillet = gear_flank(family, RIGHT), gear_fillet(family, RIGHT)
+    radius = np.linspace(family.inner_radius, family.outer_radius, SAMPLES)
+    bottom = fillet.generate(fillet.y_at(radius, 0.0), 0.0).position[:, 2]
+    top, share = family.gear_tip.height(radius), np.linspace(0, 1, SAMPLES)
+    psi, s = flank.parameters_at(radius[:, None], top[:, None] + share * (bottom - top)[:, None])
+    points = flank.point(psi, s)
     inner = np.zeros((SAMPLES, SAMPLES), bool)
     inner[2:-2, 2:-2] = True
     along, across = (np.linalg.norm(np.diff(points, axis=axis), axis=-1).max() for axis in (0, 1))
     return FlankSample(
         points=points.reshape(-1, 3),
-        normals=face_gear.flank_normal(design, roll, psi).reshape(-1, 3),
-        rolls=roll.ravel(),
+        normals=flank.normal(psi, s).reshape(-1, 3),
+        rolls=(s / flank.shaper.base_radius).ravel(),
         psis=psi.ravel(),
         inner=inner.ravel(),
         spacing=float(np.hypot(across, along)),
-        radii=radius.ravel(),
+        radii=radius,
     )
 
 

@@ -1,211 +1,19 @@
-"""Topology and nodes of a tooth section: quads that coarsen three to one away from the flank.
+"""Nodes of a tooth section: columns and rows for the element sizes, and where their nodes stand.
 
-The half section is a strip along its outer boundary (tip corner, flank, fillet, root land) and a block below.
-Coordinates: sigma runs along the boundary in units of coarse columns, t goes inwards, 0 at the surface and 1
-on the centre line and on the floor of the strip; from 1 to 2 it crosses the block below, whose columns go on
-from those of the floor.
+Both halves of a section have the same topology (`section_topology`), also where their flanks are no mirror
+images of each other, and share the nodes between them.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 from math import ceil
 
 import numpy as np
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import Array, Mask
 from facegear.teeth.curvature import smallest_radius
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.section_outline import Outline
-
-
-@dataclass(frozen=True)
-class ElementRow:
-    """A row of the strip between depths t0 and t1 (0 at the surface, 1 at the centre line).
-
-    level: its outer side has 3^level elements a coarse column; coarsens: its inner side has a third of them.
-    """
-
-    t0: float
-    t1: float
-    level: int
-    coarsens: bool
-
-
-@dataclass(frozen=True)
-class HalfSection:
-    """Right half of a tooth section: sigma and t (nodes,) of unique nodes, and quads (n, 9), sigma
-    fastest.
-    """
-
-    sigma: Array
-    t: Array
-    quads: Integers
-    columns: tuple[int, int]
-    """Coarse columns against the centre line, and against the floor."""
-
-
-def depth_rows(
-    profile: float, thickness: float, depth: float, levels: int, second: float | None = None
-) -> list[ElementRow]:
-    """Return the rows from the surface to the centre line for a tooth whose half is `depth` deep.
-
-    A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
-    rows over what is left. So a smaller `thickness` never makes the first row deeper. A row `second` deep
-    follows the first of the finest level, if given.
-
-    Parameters
-    ----------
-    profile : float
-        Element size at the surface, any unit.
-    thickness : float
-        Largest size inside, same unit.
-    depth : float
-        Depth of the centre line, same unit.
-    levels : int
-        Number of coarsening levels.
-    second : float, optional
-        Depth of a second fine row, same unit; None without.
-
-    Returns
-    -------
-    list[ElementRow]
-        Rows from the surface inwards.
-    """
-    heights: list[tuple[float, int, bool]] = []
-    if levels == 0 and profile < thickness and profile <= 0.75 * depth:
-        heights = [(profile, 0, False)]
-    for level in range(levels, 0, -1):
-        size = profile * 3.0 ** (levels - level)
-        plain = [0.8 * size] if level < levels else [size] if second is None else [size, second]
-        heights += [*((height, level, False) for height in plain), (1.5 * size, level, True)]
-    left = depth - sum(height for height, _, _ in heights)
-    count = max(1, round(left / thickness))
-    heights += [(left / count, 0, False)] * count
-    ends = np.concatenate([[0.0], np.cumsum([height for height, _, _ in heights])]) / depth
-    ends[-1] = 1.0
-    return [
-        ElementRow(float(ends[i]), float(ends[i + 1]), level, coarsens)
-        for i, (_, level, coarsens) in enumerate(heights)
-    ]
-
-
-def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
-    """Return as many three-to-one coarsening steps as reach the inner size and fit three quarters of the
-    depth.
-
-    Parameters
-    ----------
-    profile : float
-        Element size at the surface, any unit.
-    thickness : float
-        Largest size inside, same unit.
-    depth : float
-        Depth of the centre line, same unit.
-
-    Returns
-    -------
-    int
-        Number of steps.
-    """
-    levels = 0
-    while (
-        3.0 ** (levels + 1) * profile <= 1.2 * thickness
-        and _coarsening_depth(profile, levels + 1) <= 0.75 * depth
-    ):
-        levels += 1
-    return levels
-
-
-def _coarsening_depth(profile: float, levels: int) -> float:
-    """Return the depth that so many three-to-one levels take, in the unit of `profile`."""
-    return sum(2.5 * profile * 3.0**step for step in range(levels))
-
-
-def half_section(
-    rows: list[ElementRow], column_levels: list[int], columns: tuple[int, int], block: int
-) -> HalfSection:
-    """Build nodes and quads of half a section in (sigma, t) from rows and columns; no geometry enters.
-
-    Columns of different levels conform, as no row's sides are divided.
-
-    Parameters
-    ----------
-    rows : list[ElementRow]
-        Rows of the strip.
-    column_levels : list[int]
-        Refinement of each coarse column at the surface.
-    columns : tuple[int, int]
-        Numbers of columns against the centre line and against the floor.
-    block : int
-        Number of rows below the strip.
-
-    Returns
-    -------
-    HalfSection
-        Nodes in (sigma, t) and quads.
-    """
-    corners: list[Array] = []
-    for column, finest in enumerate(column_levels):
-        for row in rows:
-            corners.extend(_row_quads(column, min(row.level, finest), row, row.level <= finest))
-    block_ends = np.linspace(1.0, 2.0, block + 1)
-    for column in range(columns[0], sum(columns)):
-        for t0, t1 in pairwise(block_ends):
-            corners.append(_rectangle(column, column + 1, t0, t1))
-    return _nine_nodes(np.array(corners), columns)
-
-
-def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
-    """Return the corners (4, 2) of a rectangle in (sigma, t), sigma fastest."""
-    return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
-
-
-def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[Array]:
-    """Return the corners of one row's quadrilaterals in a column of the section mesh.
-
-    They are (4, 2) arrays in local coordinates (sigma, t), ordered (0,0), (1,0), (0,1), (1,1) in each
-    quadrilateral. There are 3**level of them across the column; in an `active` column a row that coarsens
-    joins three to one.
-    """
-    divisions = 3**level
-    if not (row.coarsens and active):
-        edges = column + np.arange(divisions + 1) / divisions
-        return [_rectangle(a, b, row.t0, row.t1) for a, b in pairwise(edges)]
-    quads = []
-    middle = (row.t0 + row.t1) / 2
-    for group in range(divisions // 3):
-        a, b, c, d = (column + (3 * group + step) / divisions for step in range(4))
-        quads += [
-            np.array([[a, row.t0], [b, row.t0], [a, row.t1], [b, middle]]),
-            _rectangle(b, c, row.t0, middle),
-            np.array([[c, row.t0], [d, row.t0], [c, middle], [d, row.t1]]),
-            np.array([[b, middle], [c, middle], [a, row.t1], [d, row.t1]]),
-        ]
-    return quads
-
-
-def _nine_nodes(corners: Array, columns: tuple[int, int]) -> HalfSection:
-    """Return nine-node quads of corners (n, 4, 2) in (sigma, t): mid nodes added, equal nodes merged."""
-    c00, c10, c01, c11 = (corners[:, i] for i in range(4))
-    nine = np.stack(
-        [
-            c00,
-            (c00 + c10) / 2,
-            c10,
-            (c00 + c01) / 2,
-            (c00 + c10 + c01 + c11) / 4,
-            (c10 + c11) / 2,
-            c01,
-            (c01 + c11) / 2,
-            c11,
-        ],
-        axis=1,
-    )
-    keys = np.round(nine.reshape(-1, 2) * 1e9).astype(np.int64)
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    points = nine.reshape(-1, 2)[first]
-    return HalfSection(points[:, 0], points[:, 1], inverse.reshape(-1, 9), columns)
-
+from facegear.teeth.section_outline import BOTTOM, LEFT, RIGHT, TOP, Outline
+from facegear.teeth.section_topology import HalfSection, coarsening_levels, depth_rows, half_section
 
 THINNED = 2
 """Rows of elements that are thinner below a fillet where stress is read."""
@@ -222,13 +30,13 @@ class SectionPlan:
     """Start and end in sigma of each segment of the outline, and the topology in (sigma, t).
 
     breaks: by segment (`chamfer`, `flank`, `fillet_upper`, `fillet_lower`, `root_land`); half: nodes and
-    quads; floor_height: of the strip's floor, m; rows: depth t at which the first rows end, (n,);
-    fillet_rows: those below the fillet, (n,).
+    quads; floor_height: of the strip's floor in every plane, (planes,), m; rows: depth t at which the first
+    rows end, (n,); fillet_rows: those below the fillet, (n,).
     """
 
     breaks: dict[str, tuple[float, float]]
     half: HalfSection
-    floor_height: float
+    floor_height: Array
     rows: Array
     fillet_rows: Array
 
@@ -239,7 +47,7 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     Parameters
     ----------
     outline : Outline
-        Outline of half a tooth.
+        Outline of a tooth.
     sizes : MeshSizes
         Element sizes.
 
@@ -248,10 +56,12 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     SectionPlan
         Nodes and quads in (sigma, t), ends of the outline's segments and depths of rows.
     """
-    scale = outline.tip_height if outline.body == "pinion" else float(np.mean(outline.planes))
+    is_pinion = outline.body == "pinion"
+    scale = outline.design.pinion_tip_radius if is_pinion else float(np.mean(outline.planes))
     lengths = {name: _length(outline, name, scale) for name in ("flank", "fillet", "root_land")}
     floor = _floor_height(outline)
-    depth = scale * float(np.mean(outline.points("flank", np.array([0.5]))[0]))
+    halfway = [outline.points(side, "flank", np.array([0.5]))[0] for side in (RIGHT, LEFT)]
+    depth = scale * float(np.mean((halfway[RIGHT] + halfway[LEFT]) / 2))
     levels = coarsening_levels(sizes.profile, sizes.thickness, depth)
 
     lower = max(1, round(lengths["fillet"] / 2 / (sizes.fillet or sizes.profile)))
@@ -278,7 +88,7 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
         "root_land": (wall + floor_columns - land / 3**floor_levels, float(wall + floor_columns)),
     }
     rows = depth_rows(sizes.profile, sizes.thickness, depth, levels, sizes.second_row)
-    below = floor - outline.back_height
+    below = float(np.max(floor)) - outline.back_height
     block = max(1, round(below / (1.5 * sizes.thickness)))
     column_levels = [levels] * wall + [floor_levels] * floor_columns
     half = half_section(rows, column_levels, (wall, floor_columns), block)
@@ -299,7 +109,7 @@ def first_row(outline: Outline, sizes: MeshSizes) -> float:
     Parameters
     ----------
     outline : Outline
-        Outline of half a tooth.
+        Outline of a tooth.
     sizes : MeshSizes
         Element sizes.
 
@@ -324,18 +134,22 @@ def _fillet_rows(rows: Array, first: float) -> Array:
     return np.minimum(rows, np.cumsum(sizes))
 
 
-def _floor_height(outline: Outline) -> float:
-    """Return the height (m, as of the outline) of the strip's floor, below which rows are plain."""
+def _floor_height(outline: Outline) -> Array:
+    """Return the heights (planes,), m, of the strip's floor, below which rows are plain."""
     below = outline.root_height - outline.back_height
-    return outline.root_height - min(0.6 * outline.design.module, 0.5 * below)
+    return outline.root_height - np.minimum(0.6 * outline.design.module, 0.5 * below)
 
 
 def _length(outline: Outline, segment: str, scale: float) -> float:
-    """Return the largest length (m) of a segment over the planes; angles become lengths at the radius
-    `scale` (m).
+    """Return the largest length (m) of a segment over both sides and all planes; angles become lengths at
+    the radius `scale` (m).
     """
-    angle, height = outline.points(segment, np.linspace(0, 1, 65))
-    return float(np.max(np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0)).sum(axis=0)))
+    lengths = []
+    for side in (RIGHT, LEFT):
+        angle, height = outline.points(side, segment, np.linspace(0, 1, 65))
+        steps = np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0))
+        lengths.append(float(np.max(steps.sum(axis=0))))
+    return max(lengths)
 
 
 def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[Mask, Array]]:
@@ -372,20 +186,22 @@ def _nearest(values: Array, value: float) -> float:
     return float(values[np.argmin(np.abs(values - value))])
 
 
-def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
-    """Compute where the plan's nodes stand in every plane: the right half of the tooth section.
+def section_nodes(outline: Outline, plan: SectionPlan, side: int) -> tuple[Array, Array]:
+    """Compute where the plan's nodes stand in every plane, on one side of the tooth section.
 
     Parameters
     ----------
     outline : Outline
-        Outline of half a tooth.
+        Outline of a tooth.
     plan : SectionPlan
-        Topology of the section.
+        Topology of half a section.
+    side : int
+        Number of the side, RIGHT or LEFT.
 
     Returns
     -------
     tuple of (nodes, planes) arrays
-        Angle from the tooth's centre line, rad, and height as of `Outline`, m.
+        Angle, rad, in the frame in which the side stands on the right, and height as of `Outline`, m.
     """
     half = plan.half
     sigma, index = np.unique(half.sigma, return_inverse=True)
@@ -393,11 +209,11 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
     outer_angle, outer_height = np.empty(shape), np.empty(shape)
     for name, (on, fraction) in segment_fractions(plan, sigma).items():
         if on.any():
-            outer_angle[on], outer_height[on] = outline.points(name, fraction)
-    inner_angle, inner_height = _inner_line(outline, plan, sigma)
+            outer_angle[on], outer_height[on] = outline.points(side, name, fraction)
+    inner_angle, inner_height = _inner_line(outline, plan, sigma, side)
 
     inward = _depth(plan, sigma[index])[:, None]
-    angle = (1 - inward) * outer_angle[index] + inward * inner_angle[index][:, None]
+    angle = (1 - inward) * outer_angle[index] + inward * inner_angle[index]
     height = (1 - inward) * outer_height[index] + inward * inner_height[index]
     below = half.t > 1
     height[below] = plan.floor_height + (half.t[below, None] - 1) * (outline.back_height - plan.floor_height)
@@ -430,18 +246,24 @@ def _straighten(half: HalfSection, values: Array) -> None:
     values[quads[:, 4]] = sides / 2 - corners / 4
 
 
-def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array) -> tuple[Array, Array]:
-    """Return angle (n,), rad, and height (n, planes), m, of the strip's inner edge at sigma (n,): down
-    the centre line, then along the floor to the cut.
+def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array, side: int) -> tuple[Array, Array]:
+    """Return angle, rad, and height, m, (n, planes), of a half strip's inner edge at sigma (n,): halfway
+    between both sides down to the floor, then along the floor to the cut.
     """
     wall, floor_columns = plan.half.columns
-    junction = plan.breaks["flank"][1]
-    _, end_of_flank = outline.points("flank", np.ones(1))
-    under = end_of_flank[0] - 0.3 * (end_of_flank[0] - plan.floor_height)
+    steps = np.array([0.0, plan.breaks["flank"][1], float(wall)])
+    ends = [outline.points(number, "flank", BOTTOM)[1][0] for number in (RIGHT, LEFT)]
+    under = (ends[RIGHT] + ends[LEFT]) / 2
+    heights = outline.tip_height, under - 0.3 * (under - plan.floor_height), plan.floor_height
+    tip_segment = "chamfer" if outline.has_chamfer else "flank"
+    breaks = (tip_segment, TOP), ("flank", BOTTOM), ("fillet", BOTTOM)
+    angles = [outline.middle(side, *segment_end)[0] for segment_end in breaks]
     # straight between coarse columns, so that mid nodes stand in the middle
     columns = np.arange(wall + 1.0)
-    height = np.empty((len(sigma), len(under)))
-    for plane, middle in enumerate(under):
-        steps = [outline.tip_height, middle, plan.floor_height]
-        height[:, plane] = np.interp(sigma, columns, np.interp(columns, [0.0, junction, wall], steps))
-    return np.maximum(sigma - wall, 0.0) / floor_columns * outline.half_pitch, height
+    angle, height = np.empty((2, len(sigma), len(under)))
+    for plane in range(len(under)):
+        for values, at_steps in ((angle, angles), (height, heights)):
+            corners = np.interp(columns, steps, [at_step[plane] for at_step in at_steps])
+            values[:, plane] = np.interp(sigma, columns, corners)
+    along_floor = np.maximum(sigma - wall, 0.0) / floor_columns * outline.half_pitch
+    return angle + along_floor[:, None], height

@@ -1,10 +1,13 @@
-"""The outline of half a tooth section in (angle, height), on the exact surfaces of either body.
+"""The outline of a tooth section in (angle, height), on the exact surfaces of either body.
 
 Height is the radius for the pinion and z for the gear, so that both sections read tip at the top. The outline
-runs from the tip corner along chamfer, flank, fillet and root land to the cut.
+of each side runs from the tip corner along chamfer, flank, fillet and root land to the cut, in the frame in
+which the side stands on the right (see `tooth_sides`). Cuts stand in the middle of the spaces' root lands, a
+whole pitch apart.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi
 
 import numpy as np
@@ -12,20 +15,35 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.design import PairDesign
+from facegear.teeth.tooth_sides import GearSide, PinionSide, ToothSide
+
+RIGHT, LEFT = 0, 1
+"""Numbers of the sides of a tooth."""
+TOP, BOTTOM = np.zeros(1), np.ones(1)
+"""Fractions of a segment at its end on the tip's and on the root's side."""
 
 
 @dataclass(frozen=True)
 class Outline:
-    """Points of an outline segment by segment, for every plane of the width.
+    """Points of an outline segment by segment, for both sides and every plane of the width.
 
-    At fractions 0..1 of each segment, from tip to root: angle (rad, from the tooth's centre line) and height
-    (m), of flank and fillet the surface parameters as well. body: `pinion` or `face_gear`.
+    At fractions 0..1 of each segment, from tip to root: angle (rad) and height (m), of flank and fillet the
+    surface parameters as well. body: `pinion` or `face_gear`.
     """
 
     design: PairDesign
     body: str
     planes: Array
     """y (m) of the pinion's planes, gear radii (m) of the gear's."""
+
+    @cached_property
+    def sides(self) -> tuple[ToothSide, ToothSide]:
+        """Right and left side; one object where they are mirror images."""
+        build = PinionSide if self.body == "pinion" else GearSide
+        right = build(self.design.family, self.planes)
+        if self.design.is_symmetric:
+            return right, right
+        return right, build(self.design.mirror_family, self.planes)
 
     @property
     def half_pitch(self) -> float:
@@ -34,92 +52,54 @@ class Outline:
         return pi / teeth
 
     @property
-    def tip_height(self) -> float:
-        """Tip radius of the pinion, or height of the gear's tip plane, m."""
-        return self.design.pinion_tip_radius if self.body == "pinion" else self.design.gear_tip_plane
+    def tip_height(self) -> Array:
+        """Tip radius of the pinion, or height of the gear's tip, (planes,), m."""
+        return self.sides[RIGHT].tip_height
 
     @property
-    def root_height(self) -> float:
-        """Root radius of the pinion, or height of the gear's root plane, m."""
-        return self.design.pinion_root_radius if self.body == "pinion" else self.design.gear_root_plane
+    def root_height(self) -> Array:
+        """Root radius of the pinion, or height of the gear's root land, (planes,), m."""
+        return self.sides[RIGHT].root_height
 
-    @property
+    @cached_property
     def back_height(self) -> float:
-        """Bore radius of the pinion, or height of the gear's back plane, m."""
-        return self.design.pinion.bore_radius if self.body == "pinion" else self.design.gear_back_plane
+        """Bore radius of the pinion, or height of the gear's back plane below its lowest root land, m."""
+        if self.body == "pinion":
+            return self.design.pinion.bore_radius
+        return face_gear_fillet.back_height(self.design)
 
     @property
     def has_chamfer(self) -> bool:
         """Whether the tip of the tooth has a chamfer."""
         return self.body == "pinion" and self.design.pinion.tip_chamfer > 0
 
-    def flank_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Compute the parameters of the exact flank, evenly in roll (pinion: its square) from tip to fillet.
+    def middle(self, side: int, segment: str, fraction: Array) -> Array:
+        """Compute the angle halfway between both sides, at the same fraction of a segment.
 
         Parameters
         ----------
+        side : int
+            Number of the side in whose frame the angle counts, RIGHT or LEFT.
+        segment : str
+            `chamfer`, `flank` or `fillet`.
         fraction : (n,) array
             Fractions of the segment, 0..1.
 
         Returns
         -------
-        tuple of (n, planes) arrays
-            Pinion: roll, rad, and y, m; gear: roll and psi, rad.
+        (n, planes) array
+            rad; 0 where both sides are mirror images.
         """
-        fraction = fraction[:, None]
-        if self.body == "pinion":
-            top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design)
-            roll = np.sqrt(top**2 + fraction * (bottom**2 - top**2))
-            return _has_same_sections(roll, self.planes[None, :])
-        radius = self.planes[None, :]
-        start, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
-        roll = start + fraction * (self.design.shaper_tip_roll - start)
-        return roll, face_gear.psi_at(self.design, radius, roll)
+        right, left = (self._surface(number, segment, fraction)[0] for number in (RIGHT, LEFT))
+        return (right - left) / 2 if side == RIGHT else (left - right) / 2
 
-    def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Compute the parameters of the exact fillet, evenly along its length in the middle plane.
+    def points(self, side: int, segment: str, fraction: Array) -> tuple[Array, Array]:
+        """Compute points of a segment of one side's outline.
 
         Parameters
         ----------
-        fraction : (n,) array
-            Fractions of the segment, 0..1.
-
-        Returns
-        -------
-        tuple of (n, planes) arrays
-            Pinion: gamma, rad, and y, m; gear: psi, rad, and gear radius, m.
-        """
-        if self.body == "pinion":
-            start = self.design.pressure_angle
-            gamma = start + self._even(fraction) * (pi / 2 - start)
-            return _has_same_sections(gamma[:, None], self.planes[None, :])
-        slopes = face_gear_fillet.fillet_slopes(
-            self.design, self.planes[None, :], self._even(fraction)[:, None]
-        )
-        return _has_same_sections(slopes, self.planes[None, :])
-
-    def _even(self, fraction: Array) -> Array:
-        """Return fractions (n,) of the fillet's parameter at fractions (n,) of its length in the middle
-        plane.
-        """
-        grid = np.linspace(0, 1, 401)
-        if self.body == "pinion":
-            start = self.design.pressure_angle
-            radius, angle = pinion.trochoid_point(self.design, start + grid * (pi / 2 - start))
-            x, h = radius * angle, radius
-        else:
-            middle = self.planes[len(self.planes) // 2]
-            slopes = face_gear_fillet.fillet_slopes(self.design, middle, grid)
-            angle, h = face_gear_fillet.fillet_section(self.design, middle, slopes)
-            x = middle * angle
-        length = np.concatenate([[0], np.cumsum(np.hypot(np.diff(x), np.diff(h)))])
-        return np.interp(fraction, length / length[-1], grid)
-
-    def points(self, segment: str, fraction: Array) -> tuple[Array, Array]:
-        """Compute points of a segment of the right half tooth's outline.
-
-        Parameters
-        ----------
+        side : int
+            Number of the side, RIGHT or LEFT.
         segment : str
             `chamfer`, `flank`, `fillet` or `root_land`.
         fraction : (n,) array
@@ -128,36 +108,27 @@ class Outline:
         Returns
         -------
         tuple of (n, planes) arrays
-            Angle, rad, and height, m.
+            Angle, rad, in the frame in which the side stands on the right, and height, m.
         """
-        if segment == "flank":
-            return self._flank(fraction)
-        if segment == "fillet":
-            u, v = self.fillet_parameters(fraction)
-            if self.body == "pinion":
-                radius, angle = pinion.trochoid_point(self.design, u)
-                return angle, radius
-            return face_gear_fillet.fillet_section(self.design, v, u)
-        fraction = np.broadcast_to(fraction[:, None], (len(fraction), len(self.planes)))
-        if segment == "root_land":
-            half = pinion if self.body == "pinion" else face_gear_fillet
-            start = self.half_pitch - half.root_half_angle(self.design)
-            angle = start + fraction * (self.half_pitch - start)
-            return np.where(fraction == 1, self.half_pitch, angle), np.full_like(angle, self.root_height)
-        angle, height = self._flank(np.zeros(1))
-        tip = pinion.tip_half_angle(self.design)
-        return tip + fraction * (angle - tip), self.tip_height + fraction * (height - self.tip_height)
+        if segment != "root_land":
+            return self._surface(side, segment, fraction)
+        start = self._surface(side, "fillet", BOTTOM)[0]
+        cut = self.middle(side, "fillet", BOTTOM) + self.half_pitch
+        steps = fraction[:, None]
+        angle = np.where(steps == 1.0, cut, start + steps * (cut - start))
+        return angle, np.broadcast_to(self.root_height, angle.shape)
 
-    def _flank(self, fraction: Array) -> tuple[Array, Array]:
-        """Return angle (rad) and height (m), (n, planes), of flank points at fractions (n,) from tip to
-        fillet.
-        """
-        u, v = self.flank_parameters(fraction)
-        if self.body == "pinion":
-            radius, angle = pinion.involute_point(self.design, u)
-            return angle, radius
-        point = face_gear.flank_point(self.design, u, v)
-        return np.arctan2(point[..., 0], point[..., 1]), point[..., 2]
+    def _surface(self, side: int, segment: str, fraction: Array) -> tuple[Array, Array]:
+        """Return angle (rad) and height (m), (n, planes), of chamfer, flank or fillet at fractions (n,)."""
+        surfaces = self.sides[side]
+        if segment == "flank":
+            return surfaces.flank(fraction)
+        if segment == "fillet":
+            return surfaces.fillet(fraction)
+        angle, height = surfaces.flank(TOP)
+        tip = angle - self.design.pinion.tip_chamfer / self.tip_height
+        steps = fraction[:, None]
+        return tip + steps * (angle - tip), self.tip_height + steps * (height - self.tip_height)
 
     def cartesian(self, angle: Array, height: Array) -> Array:
         """Convert angle and height of the planes to points of the body frame.
@@ -179,18 +150,12 @@ class Outline:
         return face_gear.cylindrical(self.planes, angle, height)
 
 
-def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
-    """Return both arrays broadcast to their common shape."""
-    u, v = np.broadcast_arrays(u, v)
-    return u, v
-
-
 PLANES, POINTS = 8, 129
 """Numbers of Gauss points along the face and of points along the profile by which a tooth is integrated."""
 
 
 def tooth_fill(design: PairDesign) -> tuple[float, float]:
-    """Compute how much of the ring between root land, tip plane and ends the face gear's teeth fill.
+    """Compute how much of the ring between root land, tip surface and ends the face gear's teeth fill.
 
     Parameters
     ----------
@@ -207,11 +172,18 @@ def tooth_fill(design: PairDesign) -> tuple[float, float]:
     at, weights = np.polynomial.legendre.leggauss(PLANES)
     radius = 0.5 * (gear.inner_radius + gear.outer_radius + at * (gear.outer_radius - gear.inner_radius))
     outline = Outline(design, "face_gear", radius)
-    parts = [outline.points(name, np.linspace(0.0, 1.0, POINTS)) for name in ("flank", "fillet")]
-    angle, height = (np.concatenate(values) for values in zip(*parts, strict=True))
-    filled_share = (angle[1:] + angle[:-1]) / (2.0 * outline.half_pitch)
-    above = (height - outline.root_height) / (outline.tip_height - outline.root_height)
-    steps, middle = above[:-1] - above[1:], 0.5 * (above[1:] + above[:-1])
-    part = weights * radius / (weights * radius).sum()
-    volume, moment = ((filled_share * steps * factor).sum(axis=0) @ part for factor in (1.0, middle))
+    depth, fractions = outline.tip_height - outline.root_height, np.linspace(0.0, 1.0, POINTS)
+    part = weights * radius * depth
+    part /= part.sum()
+    volume, moment = 0.0, 0.0
+    for side in (RIGHT, LEFT):
+        segments = [outline.points(side, name, fractions) for name in ("flank", "fillet")]
+        angle, height = (np.concatenate(values) for values in zip(*segments, strict=True))
+        filled_share = (angle[1:] + angle[:-1]) / (4.0 * outline.half_pitch)
+        above = (height - outline.root_height) / depth
+        steps, middle = above[:-1] - above[1:], 0.5 * (above[1:] + above[:-1])
+        side_volume, side_moment = (
+            (filled_share * steps * factor).sum(axis=0) @ part for factor in (1.0, middle)
+        )
+        volume, moment = volume + side_volume, moment + side_moment
     return float(volume), float(moment / volume)

@@ -15,17 +15,20 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.quantities import Body
-from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_shapes import Relief
 from facegear.teeth.modifications import fillet_as_made, flank_as_made
-from facegear.teeth.placement import body_rotation
+from facegear.teeth.placement import body_rotation, mirror_teeth
+from facegear.teeth.section_outline import Outline
 from facegear.teeth.surfaces import fillet_points, flank_points
+from facegear.teeth.tooth_sides import GearSide, PinionSide, cylindrical, polar
 
 
 @dataclass(frozen=True, eq=False)
 class HalfTooth:
-    """The right half of tooth 0 from the middle of its land to the middle of the space.
+    """One half of tooth 0 from the middle of its land to the middle of the space, in the frame in which it
+    stands on the right.
 
     `surface`: patches in that order; `base`: where each of them, ends in the body (bore or back).
     """
@@ -61,22 +64,16 @@ def solid(
     """
     whole = teeth_of(design, body)
     count = whole if teeth is None else teeth
-    right, left = _halves(design, body, profile, width)
+    halves = _pinion_halves if body == "pinion" else _gear_halves
+    right, left = halves(design, profile, width)
     tooth = [*_sides(right), *(mirror_patch(part) for part in _sides(left))]
     patches = [rotate_points(part, body, 2 * pi * n / whole) for n in numbers(count) for part in tooth]
     if count < whole:
-        end, first, last = _cut(right), *(2 * pi * n / whole for n in (numbers(count)[0], numbers(count)[-1]))
-        patches += [rotate_points(end, body, last), rotate_points(mirror_patch(end), body, first)]
+        first, last = (2 * pi * n / whole for n in (numbers(count)[0] - 1, numbers(count)[-1]))
+        # the same triangles at both ends, so that their chords cancel in the volume
+        end = _cut(right)
+        patches += [rotate_points(end, body, last), rotate_points(end.transpose(1, 0, 2), body, first)]
     return patches
-
-
-def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
-    """Return the right half of a tooth, and the left half seen in a mirror x -> -x, with its own
-    deviations.
-    """
-    if body == "pinion":
-        return _pinion_half(design, profile, width), _pinion_half(design.with_swapped_flanks, profile, width)
-    return _gear_half(design.with_swapped_flanks, profile, width), _gear_half(design, profile, width)
 
 
 def teeth_of(design: PairDesign, body: Body) -> int:
@@ -164,58 +161,79 @@ def _cut(half: HalfTooth) -> Array:
     return cut[::-1] if half.normal_sign > 0 else cut
 
 
-def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
-    """Return the right half of a pinion tooth: land, chamfer, flank, fillet, root land, and their base at
-    the bore.
+def _pinion_halves(design: PairDesign, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
+    """Return the right and the left half of a pinion tooth: land, chamfer, flank, fillet, root land, and
+    their base at the bore.
     """
-    part, few = design.pinion, (profile - 1) // 4 + 1
-    y = np.linspace(design.mean_radius - part.width / 2, design.mean_radius + part.width / 2, width)[None, :]
-    bounds = _roll_bounds(design)
+    half, few = design.pinion.width / 2, (profile - 1) // 4 + 1
+    y = np.linspace(design.middle - half, design.middle + half, width)
+    sides = [_pinion_side(side_design, y, profile) for side_design in (design, mirror_teeth(design))]
+    tips, roots = ([_polar_lines(side[end][end]) for side in sides] for end in (0, -1))
+    pitch = np.array([pi / design.pinion.teeth, 0.0, 0.0])
+    halves = []
+    for number, side in enumerate(sides):
+        land = _lines(_halfway(tips, number), tips[number], few, side[0][0])
+        root = _lines(_halfway(roots, number) + pitch, roots[number], few, side[-1][-1])[::-1]
+        surface = [land, *side, root]
+        base = [_onto_bore(patch, design.pinion.bore_radius) for patch in surface]
+        halves.append(HalfTooth(surface, base, -1.0))
+    return halves[0], halves[1]
+
+
+def _pinion_side(design: PairDesign, y: Array, profile: int) -> list[Array]:
+    """Return the patches of the right side at places y (width,), m: chamfer, flank and fillet."""
+    side = PinionSide(design.family, y)
     flank = [
-        flank_points(design, np.linspace(top, bottom, profile)[:, None], y).position
-        for top, bottom in pairwise(bounds)
+        flank_points(design, np.linspace(top, bottom, profile), y).position
+        for top, bottom in pairwise(_roll_bounds(design, side))
     ]
-    gamma = np.linspace(design.pressure_angle, pi / 2, profile)[:, None]
-    fillet = fillet_points(design, gamma, y).position
-    tip = flank[0][0]
-    lands = []
-    if part.tip_chamfer > 0:
-        corner = pinion.cartesian(design.pinion_tip_radius, pinion.tip_half_angle(design), y[0])
-        lands = [_between(corner, tip, few)]
-        tip = corner
-    land = _arc(np.zeros(width), tip, few)
-    root = _arc(np.full(width, pi / part.teeth), fillet[-1], few)[::-1]
-    surface = [land, *lands, *flank, fillet, root]
-    return HalfTooth(surface, [_onto_bore(patch, part.bore_radius) for patch in surface], -1.0)
+    gamma = np.linspace(side.surface.helicoid.pressure_angle, pi / 2, profile)[:, None]
+    patches = [*flank, fillet_points(design, gamma, y).position]
+    if design.pinion.tip_chamfer > 0:
+        angle = side.flank(np.zeros(1))[0][0] - design.pinion.tip_chamfer / side.tip_height
+        corner = pinion.cartesian(side.tip_height, angle, y)
+        patches.insert(0, _between(corner, flank[0][0], (profile - 1) // 4 + 1))
+    return patches
 
 
-def _roll_bounds(design: PairDesign) -> list[float]:
-    """Return the roll angles (rad), from tip to fillet, between which the pinion's flank has no kink by
+def _roll_bounds(design: PairDesign, side: PinionSide) -> list[Array]:
+    """Return the roll angles (width,), rad, from tip to fillet, between which the right flank has no kink by
     reliefs.
     """
-    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    top, bottom = side.roll_ends
 
     def kinks(relief: Relief) -> list[float]:
         """Return where a relief begins and ends, as roll angles (rad) from its end of the flank."""
         lengths = [relief.start, relief.start + relief.length] if relief.amount else []
         return [length / design.pinion_base_radius for length in lengths]
 
-    inside = [top - kink for kink in kinks(design.pinion.tip_relief)]
-    inside += [bottom + kink for kink in kinks(design.pinion.root_relief)]
-    return [top, *sorted({roll for roll in inside if bottom < roll < top}, reverse=True), bottom]
+    lines = [top - kink for kink in kinks(design.pinion.tip_relief)]
+    lines += [bottom + kink for kink in kinks(design.pinion.root_relief)]
+    inside = [line for line in lines if ((bottom < line) & (line < top)).all()]
+    different = {line.tobytes(): line for line in inside}.values()
+    return [top, *np.sort(np.array([*different]).reshape(-1, top.size), axis=0)[::-1], bottom]
 
 
-def _polar(points: Array) -> tuple[Array, Array]:
-    """Return radius, m, and angle, rad, of points about the pinion's axis."""
-    return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
+def _polar_lines(points: Array) -> Array:
+    """Return angle (rad), radius and y (m), (n, 3), of points of the pinion (n, 3), m."""
+    return np.stack([*polar(points), points[:, 1]], axis=-1)
 
 
-def _arc(start: Array, end: Array, count: int) -> Array:
-    """Return points (count, n, 3) on circles from polar angles `start` (n,) to the points `end` (n, 3)."""
-    radius, angle = _polar(end)
-    fraction = np.linspace(0.0, 1.0, count)[:, None]
-    points = pinion.cartesian(radius, start + fraction * (angle - start), end[:, 1])
-    points[-1] = end
+def _halfway(lines: Sequence[Array], number: int) -> Array:
+    """Return the line (n, 3) between the right and the left side's `lines`, each with angles in its own
+    frame, in the frame of side `number`.
+    """
+    return (lines[number] + lines[1 - number] * np.array([-1.0, 1.0, 1.0])) / 2
+
+
+def _lines(start: Array, end: Array, count: int, last: Array) -> Array:
+    """Return points (count, n, 3) of the pinion, m, between angle, radius and y `start` and `end` (n, 3),
+    the `last` ones (n, 3) given.
+    """
+    fraction = np.linspace(0.0, 1.0, count)[:, None, None]
+    angle, radius, y = np.moveaxis(start + fraction * (end - start), -1, 0)
+    points = pinion.cartesian(radius, angle, y)
+    points[-1] = last
     return points
 
 
@@ -229,32 +247,44 @@ def _between(start: Array, end: Array, count: int) -> Array:
 
 def _onto_bore(points: Array, bore: float) -> Array:
     """Project points (..., 3), m, radially onto a cylinder of radius `bore` (m) about the pinion's axis."""
-    _, angle = _polar(points)
+    angle, _ = polar(points)
     return pinion.cartesian(bore, angle, points[..., 1])
 
 
-def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
-    """Return the right half of a gear tooth: land, flank, fillet, root land, and their base on the back
-    plane.
+def _gear_halves(design: PairDesign, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
+    """Return the right and the left half of a gear tooth: land, flank, fillet, root land, and their base on
+    the back plane.
     """
-    gear, few = design.face_gear, (profile - 1) // 4 + 1
-    radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
-    fraction = np.linspace(0.0, 1.0, profile)[:, None]
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    roll = top + fraction * (design.shaper_tip_roll - top)
-    flank = flank_as_made(design, roll, face_gear.psi_at(design, radius, roll))
-    slopes = face_gear_fillet.fillet_slopes(design, radius, fraction)
-    fillet = fillet_as_made(design, radius, slopes)
+    gear, step = design.face_gear, np.linspace(0.0, 1.0, (profile - 1) // 4 + 1)[:, None]
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, width)
+    outline = Outline(design, "face_gear", radius)
+    sides = [_gear_side(side_design, radius, profile) for side_design in (mirror_teeth(design), design)]
+    tips, roots = ([cylindrical(side[end][end])[0] for side in sides] for end in (0, -1))
+    flat, back = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, outline.back_height])
+    halves = []
+    for number, (flank, fillet) in enumerate(sides):
+        (tip, other_tip), (last, other_last) = (
+            (angles[number], angles[1 - number]) for angles in (tips, roots)
+        )
+        middle, cut = (tip - other_tip) / 2, (last - other_last) / 2 + pi / gear.teeth
+        land = face_gear.cylindrical(radius, middle + step * (tip - middle), outline.tip_height)
+        root = face_gear.cylindrical(radius, last + step * (cut - last), outline.root_height)
+        land[-1], root[0] = flank[0], fillet[-1]
+        surface = [land, flank, fillet, root]
+        halves.append(HalfTooth(surface, [patch * flat + back for patch in surface], 1.0))
+    return halves[0], halves[1]
+
+
+def _gear_side(design: PairDesign, radius: Array, profile: int) -> tuple[Array, Array]:
+    """Return the patches of flank and fillet of the left side at gear radii (width,), m, in the mirror in
+    which it stands on the right.
+    """
+    side, fraction = GearSide(design.mirror_family, radius), np.linspace(0.0, 1.0, profile)
+    flank = flank_as_made(design, *side.flank_parameters(fraction))
+    start, end = side.slope_ends
+    fillet = fillet_as_made(design, radius, start + fraction[:, None] * (end - start))
     fillet[0] = flank[-1]
-    step = np.linspace(0.0, 1.0, few)[:, None]
-    tip, last = (np.arctan2(line[:, 0], line[:, 1]) for line in (flank[0], fillet[-1]))
-    land = face_gear.cylindrical(radius, step * tip, design.gear_tip_plane)
-    root = face_gear.cylindrical(radius, last + step * (pi / gear.teeth - last), design.gear_root_plane)
-    land[-1], root[0] = flank[0], fillet[-1]
-    surface = [land, flank, fillet, root]
-    flat = np.array([1.0, 1.0, 0.0])
-    base = [patch * flat + [0.0, 0.0, design.gear_back_plane] for patch in surface]
-    return HalfTooth(surface, base, 1.0)
+    return flank, fillet
 
 
 def volume(patches: Sequence[Array]) -> float:

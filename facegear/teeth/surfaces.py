@@ -9,8 +9,9 @@ from facegear.arrays import Array, Integers
 from facegear.quantities import Body
 from facegear.teeth import face_gear, pinion
 from facegear.teeth.design import PairDesign
-from facegear.teeth.helicoid import PinionFlank, pinion_fillet
-from facegear.teeth.modifications import flank_end
+from facegear.teeth.helicoid import pinion_fillet
+from facegear.teeth.modifications import depth_below_tip, flank_end
+from facegear.teeth.placement import mirror_teeth
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class SurfacePoints:
     @property
     def lever_arm(self) -> Array:
         """Lever arm (...), m, of the normals about the pinion's axis: way along the normal per positive
-        rotation.
+        rotation, `PairDesign.normal_arm` on the drive flank.
         """
         x, z = self.position[..., 0], self.position[..., 2]
         return x * self.normal[..., 2] - z * self.normal[..., 0]
@@ -73,7 +74,7 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
     SurfacePoints
         Points (..., 3), m.
     """
-    flank = PinionFlank(design.family.pinion_flanks[0])
+    flank = pinion.pinion_flank(design)
     length = design.pinion_base_radius * np.asarray(roll, float)
     normal = flank.normal(length, y)
     depth = pinion.removed_depth(design, roll, y)
@@ -81,7 +82,8 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
 
 
 def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:
-    """Compute points of the right root as made: the trochoid less what is taken off at the flank's end.
+    """Compute points of the right root fillet as made: the trochoid less what is taken off at the flank's
+    end.
 
     Parameters
     ----------
@@ -99,15 +101,15 @@ def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> Surface
     """
     root = pinion_fillet(design.family, 1)
     normal = root.normal(gamma, y)
-    depth = pinion.removed_depth(design, pinion.junction_roll(design), y)
+    depth = pinion.removed_depth(design, pinion.junction_roll(design, y), y)
     return SurfacePoints(root.point(gamma, y) - depth[..., None] * normal, normal)
 
 
 @dataclass(frozen=True)
 class Face:
-    """The flank of a body in the coordinates of `DeviationGrid`: its ends (m) along the face and the profile.
+    """The drive flank of a body in the coordinates of `DeviationGrid`: its ends (m) along face and profile.
 
-    `middle`: the place at the middle of the face and on the pitch circle or pitch plane, where pitch and
+    `middle`: the place at the middle of the face and on the pitch cylinder or datum surface, where pitch and
     thickness are measured.
     """
 
@@ -119,7 +121,7 @@ class Face:
 
 
 def flank_face(design: PairDesign, body: Body) -> Face:
-    """Return the extent of a body's flank; the gear's counts as deep everywhere as at its deepest end.
+    """Return the extent of a body's drive flank; it counts as high and deep everywhere as at either end.
 
     Parameters
     ----------
@@ -135,13 +137,19 @@ def flank_face(design: PairDesign, body: Body) -> Face:
     """
     if body == "pinion":
         base, half = design.pinion_base_radius, design.pinion.width / 2
-        ends = base * pinion.junction_roll(design), base * design.pinion_tip_roll
-        return Face(design, body, (-half, half), ends, (0.0, base * float(np.tan(design.pressure_angle))))
+        y = design.middle + np.array([-half, half])
+        ends = (
+            base * float(pinion.junction_roll(design, y).min()),
+            base * float(pinion.tip_roll(design, y).max()),
+        )
+        middle = 0.0, base * float(np.tan(design.transverse_pressure_angle))
+        return Face(design, body, (-half, half), ends, middle)
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
-    deepest = float(design.gear_tip_plane - flank_end(design, radius)[:, 2].min())
+    deepest = float(depth_below_tip(design, flank_end(design, radius)).max())
     ends = gear.inner_radius, gear.outer_radius
-    return Face(design, body, ends, (0.0, deepest), (design.mean_radius, gear.addendum))
+    middle = design.mean_radius, face_gear.pitch_depth(design)
+    return Face(design, body, ends, (0.0, deepest), middle)
 
 
 def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[Array, Array]:
@@ -170,14 +178,17 @@ def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[
     NotConverged
         Beside the gear's flank.
     """
-    design = face.design
+    # functions of a design describe the pinion's right flank, and the gear's left one in a mirror
+    is_described = (side == "right") is (face.body == "pinion")
+    design = face.design if is_described else mirror_teeth(face.design)
     if face.body == "pinion":
-        roll = np.broadcast_to(across / design.pinion_base_radius, (along.size, across.size))
-        points = pinion.cartesian(*pinion.involute_point(design, roll), design.mean_radius + along[:, None])
-        nx, nz = pinion.involute_normal(design, roll)
-        normals = np.stack([nx, np.zeros_like(nx), nz], axis=-1)
+        flank, y = pinion.pinion_flank(design), design.middle + along[:, None]
+        roll = np.broadcast_to(across, (along.size, across.size))
+        points, normals = flank.point(roll, y), flank.normal(roll, y)
     else:
-        coordinates = face_gear.roll_and_psi_at_height(design, along[:, None], design.gear_tip_plane - across)
+        radius = along[:, None]
+        height = face_gear.tip_height(design, radius) - across
+        coordinates = face_gear.roll_and_psi_at_height(design, radius, height)
         points, normals = (
             face_gear.flank_point(design, *coordinates),
             face_gear.flank_normal(design, *coordinates),

@@ -11,16 +11,18 @@ from facegear.teeth.design import PairDesign
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.placement import body_rotation
 from facegear.teeth.section_mesh import SectionPlan, plan_section, section_nodes, segment_fractions
-from facegear.teeth.section_outline import Outline
+from facegear.teeth.section_outline import LEFT, RIGHT, Outline
 
 
 @dataclass(frozen=True)
 class SurfaceGrid:
     """Nodes of a flank or fillet, (n_profile, n_width), tip to root and along the width, mid nodes included.
 
-    u, v are the parameters of the right side's exact surface, the left being its mirror image: pinion flank:
-    roll angle (rad) and y (m); pinion fillet: gamma (rad) and y; gear flank: roll th and psi (rad);
-    gear fillet: psi (rad), gear radius (m). Every second node in each direction, from the first, is a corner.
+    u, v are the parameters of the exact surface: pinion flank: roll angle (rad) and y (m); pinion fillet:
+    gamma (rad) and y; gear flank: roll th and psi (rad); gear fillet: psi (rad), gear radius (m). On the
+    drive side (pinion right, gear left) they are those of the functions of the design, on the other side
+    those of the functions of its `placement.mirror_teeth`. Every second node in each direction, from the
+    first, is a corner.
     """
 
     nodes: Integers
@@ -86,7 +88,7 @@ CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
 
 
 def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """Build the mesh of one pinion tooth; the face is centred on the gear's mean radius.
+    """Build the mesh of one pinion tooth, section by section across its axis.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
         Mesh of the tooth.
     """
     half = design.pinion.width / 2
-    return _tooth(design, "pinion", sizes, design.mean_radius - half, design.mean_radius + half)
+    return _tooth(design, "pinion", sizes, design.middle - half, design.middle + half)
 
 
 def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
@@ -128,14 +130,14 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     outline = Outline(design, body, np.linspace(start, end, 2 * layers + 1))
     plan = plan_section(outline, sizes)
     half = plan.half
-    angle, height = section_nodes(outline, plan)
+    (angle, height), (left_angle, left_height) = _both_halves(outline, plan)
 
     wall, _ = half.columns
     on_axis = ((half.t == 1) & (half.sigma <= wall)) | ((half.t > 1) & (half.sigma == wall))
     mirror = np.arange(len(half.t))
     mirror[~on_axis] = len(half.t) + np.arange(np.count_nonzero(~on_axis))
-    angle = np.concatenate([angle, -angle[~on_axis]])
-    height = np.concatenate([height, height[~on_axis]])
+    angle = np.concatenate([angle, -left_angle[~on_axis]])
+    height = np.concatenate([height, left_height[~on_axis]])
     points = outline.cartesian(angle, height)
 
     # sigma down the flank, t inwards, width along y: right handed for the gear's right half (x, z) only
@@ -166,6 +168,14 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
         cut_left=(mirror[cut][:, None] + planes).ravel(),
         cut_right=(cut[:, None] + planes).ravel(),
     )
+
+
+def _both_halves(outline: Outline, plan: SectionPlan) -> list[tuple[Array, Array]]:
+    """Return angle (rad) and height (m), (nodes, planes), of the right and the left half section, each in
+    the frame in which it stands on the right; computed once where both are mirror images.
+    """
+    right = section_nodes(outline, plan, RIGHT)
+    return [right, right if outline.design.is_symmetric else section_nodes(outline, plan, LEFT)]
 
 
 def _transpose_grid(quads: Integers) -> Integers:
@@ -241,12 +251,13 @@ def _surfaces(
     surface = surface[np.argsort(half.sigma[surface])]
     fractions = segment_fractions(plan, half.sigma[surface])
     grids = {}
-    for name, parameters in (("flank", outline.flank_parameters), ("fillet", outline.fillet_parameters)):
+    for name in ("flank", "fillet"):
         on, fraction = fractions[name]
-        u, v = parameters(fraction)
         section = surface[on]
-        grids[f"{name}_right"] = SurfaceGrid(section[:, None] + planes, u, v)
-        grids[f"{name}_left"] = SurfaceGrid(mirror[section][:, None] + planes, u, v)
+        for number, side, numbers in ((RIGHT, "right", section), (LEFT, "left", mirror[section])):
+            exact = outline.sides[number]
+            parameters = exact.flank_parameters if name == "flank" else exact.fillet_parameters
+            grids[f"{name}_{side}"] = SurfaceGrid(numbers[:, None] + planes, *parameters(fraction))
     return grids
 
 

@@ -11,7 +11,7 @@ from facegear.errors import NotConverged
 from facegear.teeth.closest import PAIRS, closest
 from facegear.teeth.conjugate import exact_contact
 from facegear.teeth.design import AssemblyErrors, PairDesign
-from facegear.teeth.family_contact import PinionPose, contact_line
+from facegear.teeth.family_contact import NOMINAL, contact_line
 from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle
 from facegear.teeth.tooth_family import ToothFamily
 
@@ -36,7 +36,7 @@ class UnloadedContact:
     phi1, phi2
         (p,) rad.
     transmission_error
-        (p,) m, (phi2 - phi1 N1 / N2) r_b2, along the line of action.
+        (p,) m, (phi2 - phi1 N1 / N2) times `PairDesign.gear_normal_arm`, along the line of action.
     tooth
         (p,) number of the touching pair.
     gap, roll, y
@@ -92,8 +92,9 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     is_facing = np.isfinite(nearest.gap)
     roll, y = (np.where(is_facing, part, np.nan) for part in (nearest.roll, nearest.y))
     rows, column = np.arange(phi1.size), np.argmin(nearest.gap, axis=1)
-    roll[rows, column] = exact.normal_roll + phi1 + 2 * np.pi / design.pinion.teeth * PAIRS[column]
-    y[rows, column] = exact.y
+    turn = phi1 + 2 * np.pi / design.pinion.teeth * PAIRS[column]
+    roll_and_y = exact.pinion_place(design.family.pinion_flanks[0], turn)
+    roll[rows, column], y[rows, column] = roll_and_y
     return UnloadedContact(phi1, phi2, error, PAIRS[column], nearest.gap, roll, y)
 
 
@@ -131,7 +132,7 @@ def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
         return phi2, error
     conjugate = np.atleast_1d(conjugate_angle(design, phi1))
     error = np.full(conjugate.size, exact.transmission_error)
-    return conjugate + error / design.gear_base_radius, error
+    return conjugate + error / design.gear_normal_arm, error
 
 
 @lru_cache(maxsize=16)
@@ -166,11 +167,8 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
     """
     phi1 = np.atleast_1d(np.asarray(phi1, float))
     conjugate = conjugate_angle(design, phi1)
-    errors, angle = design.assembly, design.pressure_angle
-    initial_error = (
-        errors.offset * np.cos(angle) - errors.gear_axial * np.sin(angle) - design.pinion.thinning / 2
-    )
-    phi2 = conjugate + initial_error / design.gear_base_radius
+    initial_error = _first_error(design)
+    phi2 = conjugate + initial_error / design.gear_normal_arm
     nearest = closest(design, phi1, phi2, margin=np.inf if every_pair else FOLLOWED_MARGIN)
     unfollowed_turn = np.zeros(len(phi1))
     for _ in range(MAX_TURNS):
@@ -185,17 +183,17 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
             smallest = nearest.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
             is_facing = np.isfinite(nearest.gap)
-            phi2 = phi2 - smallest / design.gear_base_radius
+            phi2 = phi2 - smallest / design.gear_normal_arm
             return UnloadedContact(
                 phi1=phi1,
                 phi2=phi2,
-                transmission_error=(phi2 - conjugate) * design.gear_base_radius,
+                transmission_error=(phi2 - conjugate) * design.gear_normal_arm,
                 tooth=PAIRS[np.argmin(nearest.gap, axis=1)],
                 gap=nearest.gap - smallest[:, None],
                 roll=np.where(is_facing, nearest.roll, np.nan),
                 y=np.where(is_facing, nearest.y, np.nan),
             )
-        phi2 = phi2 - smallest / design.gear_base_radius
+        phi2 = phi2 - smallest / design.gear_normal_arm
         # the turn opens or closes all pairs alike, those not followed too
         last_closest = replace(nearest, gap=nearest.gap - smallest[:, None])
         margin = FOLLOWED_MARGIN if every_pair else ROUGH + UNEVEN * float(np.max(np.abs(smallest)))
@@ -207,15 +205,29 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
     raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", f"{MAX_TURNS} turns of the gear")
 
 
+def _first_error(design: PairDesign) -> float:
+    """Return the transmission error (m) of the nominal normal that assembly errors and thinning leave, to
+    first order.
+    """
+    errors, flank = design.assembly, design.family.pinion_flanks[0]
+    across, upright = flank.cosine * np.cos(flank.pressure_angle), flank.cosine * np.sin(flank.pressure_angle)
+    motion = design.family.motion
+    vertical = -flank.sine * motion.cosine - upright * motion.sine
+    along = flank.sine * errors.pinion_axial
+    return float(errors.offset * across + errors.gear_axial * vertical + along - design.pinion.thinning / 2)
+
+
 POSITIONS = 4
 """Number of positions of a pitch at which backlash is searched; without assembly errors it is constant."""
 
 
 @lru_cache(maxsize=256)
 def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float:
-    """Compute the normal backlash of the assembled pair, smallest of a few positions of a pitch.
+    """Compute the backlash of the assembled pair along the drive flank's normal, smallest of a few positions
+    of a pitch.
 
-    Without assembly errors and deviations it is the thinning of the pinion's teeth.
+    It is the turn that the gear has from drive to back flank, times `PairDesign.gear_normal_arm`. Without
+    assembly errors and deviations that of symmetric teeth is the thinning of the pinion's teeth.
 
     Parameters
     ----------
@@ -235,11 +247,16 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
     NotConverged
         Where the flanks do not face each other.
     """
-    if design.assembly == AssemblyErrors() and not (design.deviates or design.with_swapped_flanks.deviates):
+    is_nominal = design.assembly == NOMINAL and design.is_symmetric
+    if is_nominal and not (design.deviates or design.with_swapped_flanks.deviates):
         return design.pinion.thinning
-    drive, back = exact_contact(design), exact_contact(mirror_design(design))
+    back_pair = mirror_design(design)
+    drive, back = exact_contact(design), exact_contact(back_pair)
     if drive is not None and back is not None:
-        return -back.transmission_error - drive.transmission_error
+        arms = design.gear_normal_arm, back_pair.gear_normal_arm
+        if arms[0] == arms[1]:
+            return -back.transmission_error - drive.transmission_error
+        return -back.transmission_error / arms[1] * arms[0] - drive.transmission_error
     return _search_backlash(design, beside)
 
 
@@ -253,18 +270,18 @@ def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
         unloaded_motion(design, pinion_angle(design, np.union1d(positions, beside)))
     drive, _ = unloaded_motion(design, phi1)
     back = drive if design == mirror_design(design) else unloaded_motion(mirror_design(design), phi1)[0]
-    return float(((-back[::-1] - drive) * design.gear_base_radius).min())
+    return float(((-back[::-1] - drive) * design.gear_normal_arm).min())
 
 
-def gear_backlash(family: ToothFamily, pose: PinionPose | None = None) -> float | None:
-    """Compute the backlash of the unmodified flanks in a pose, in closed form; edges are left out.
+def gear_backlash(family: ToothFamily, errors: AssemblyErrors = NOMINAL) -> float | None:
+    """Compute the backlash of the unmodified flanks in an assembly, in closed form; edges are left out.
 
     Parameters
     ----------
     family : ToothFamily
         Pair of gears.
-    pose : PinionPose, optional
-        Where the pinion stands; the nominal place if None.
+    errors : AssemblyErrors
+        Errors of assembly; none by default.
 
     Returns
     -------
@@ -273,7 +290,7 @@ def gear_backlash(family: ToothFamily, pose: PinionPose | None = None) -> float 
     """
     angles = []
     for side in (-1, 1):
-        line = contact_line(family, side, pose)
+        line = contact_line(family, side, errors)
         if line is None:
             return None
         angles.append(line.transmission_error * family.motion.ratio / line.base_pitch)

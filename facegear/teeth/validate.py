@@ -2,17 +2,21 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from math import cos, inf, pi, sin, sqrt, tan
+from math import cos, inf, sin, sqrt, tan
 
 import numpy as np
 from scipy.optimize import brentq
 
 from facegear.errors import GeometryError
-from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth import face_gear, pinion
+from facegear.teeth.conjugate import PairNumbers
 from facegear.teeth.design import PairDesign, as_cut
+from facegear.teeth.family_range import THINNEST_ROOT
 from facegear.teeth.flank_shapes import Relief
+from facegear.teeth.helicoid import pinion_fillet, shaper_land
 from facegear.teeth.limits import ROUNDING, THINNEST_LAND, RadiusLimits, face_range, radius_limits
-from facegear.teeth.modifications import flank_end
+from facegear.teeth.modifications import depth_below_tip, flank_end
+from facegear.teeth.placement import mirror_teeth
 
 MAX_RELIEF = 0.05
 """Largest relief or crowning, in modules: some three times what the heaviest load asks for."""
@@ -52,16 +56,64 @@ def _refuse(key: str, value: float, requirement: str) -> None:
     raise GeometryError(key, value if isinstance(value, int) else round(float(value), 6), requirement)
 
 
+def _sides(design: PairDesign) -> tuple[PairDesign, ...]:
+    """Return the design, and where its coast flanks are others than its drive flanks its `mirror_teeth`."""
+    return (design,) if design.is_symmetric else (design, mirror_teeth(design))
+
+
+def _section_places(design: PairDesign) -> list[float]:
+    """Return the places y (m) of sections that have to be possible: the middle, or both ends of tapered
+    teeth.
+    """
+    half = design.pinion.width / 2 if design.taper_angle else 0.0
+    return sorted({design.middle - half, design.middle + half})
+
+
 def _check_pinion(design: PairDesign) -> None:
     """Raise GeometryError if rack rounding, dedendum, profile shift, chamfer, tip land or bore are
     impossible.
     """
-    part, m, angle = design.pinion, design.module, design.pressure_angle
-    rho = part.rack_tip_radius
-    half_thickness = pi * m / 4 + part.thinning / (2 * cos(angle))
-    max_rounding = (
-        (half_thickness - part.dedendum * tan(angle) - THINNEST_LAND * m / 2) * cos(angle) / (1 - sin(angle))
-    )
+    _check_rack(design)
+    for side in _sides(design):
+        for y in _section_places(design):
+            _check_section(side, y)
+    part, m = design.pinion, design.module
+    for y in _section_places(design):
+        halves = [pinion.tip_half_angle(side, y) for side in _sides(design)]
+        land = float((halves[0] + halves[-1]) * pinion.tip_radius(design, y))
+        if land < THINNEST_LAND * m:
+            key, value = (
+                ("tip_chamfer_mm", 1e3 * part.tip_chamfer)
+                if part.tip_chamfer
+                else ("addendum_modules", part.addendum / m)
+            )
+            requirement = f"less: the tip land would be {1e3 * land:.3f} mm wide{_end_in_words(design, y)}"
+            _refuse(f"pinion.{key}", value, requirement)
+    deepest = min(float(pinion.root_radius(design, y)) for y in _section_places(design)) - 0.6 * m
+    if part.bore_radius > deepest:
+        _refuse("pinion.bore_radius_mm", 1e3 * part.bore_radius, f"at most {1e3 * deepest:.3f}")
+
+
+def _end_in_words(design: PairDesign, y: float) -> str:
+    """Return at which end of a tapered face a place (m) is, in words; nothing for the middle."""
+    if y == design.middle:
+        return ""
+    return f" at the {'inner' if y < design.middle else 'outer'} end; a smaller taper_angle_deg helps"
+
+
+def _check_rack(design: PairDesign) -> None:
+    """Raise GeometryError if the tip of the pinion's rack has no land."""
+    part, m = design.pinion, design.module
+
+    def half_land(rounding: float, dedendum: float) -> float:
+        """Return half the land (m) that a tip rounding and a dedendum (m) leave, on the normal rack."""
+        family = replace(design.family, rack_tip_radius=rounding, pinion_dedendum=dedendum)
+        return sum(pinion_fillet(family, side).lateral for side in (1, -1)) / 2 * cos(design.helix_angle)
+
+    rho, least = part.rack_tip_radius, THINNEST_LAND * m / 2
+    sharp = half_land(0.0, part.dedendum)
+    # the land falls in proportion to the rounding, and to the dedendum
+    max_rounding = (sharp - least) * m / (sharp - half_land(m, part.dedendum))
     if rho > max_rounding:
         _refuse(
             "pinion.rack_tip_radius_modules",
@@ -69,46 +121,47 @@ def _check_pinion(design: PairDesign) -> None:
             f"at most {max(max_rounding, 0) / m:.4f}: the rack's tip is round",
         )
     if max_rounding < 0:
-        deepest = (half_thickness - THINNEST_LAND * m / 2) / tan(angle)
+        deepest = part.dedendum + (sharp - least) * m / (half_land(0.0, part.dedendum - m) - sharp)
         _refuse(
             "pinion.dedendum_modules", part.dedendum / m, f"at most {deepest / m:.4f}: the rack is pointed"
         )
-    min_shift = part.dedendum - rho - (design.pinion_pitch_radius * sin(angle) - rho) * sin(angle)
+
+
+def _check_section(design: PairDesign, y: float) -> None:
+    """Raise GeometryError for a profile shift or chamfer that no drive side has in a section at y (m)."""
+    part, m, angle = design.pinion, design.module, design.transverse_pressure_angle
+    rho = part.rack_tip_radius * (1 - sin(design.pressure_angle)) / cos(design.taper_angle)
+    end = _end_in_words(design, y)
+    growth = (y - design.middle) * tan(design.taper_angle)
+    min_shift = part.dedendum - rho - design.pinion_pitch_radius * sin(angle) ** 2 - growth
     if part.profile_shift < min_shift:
-        _refuse(
-            "pinion.profile_shift_modules", part.profile_shift / m, f"at least {min_shift / m:.4f}: undercut"
-        )
-    if part.profile_shift >= part.dedendum - rho - 1e-3 * m:
         _refuse(
             "pinion.profile_shift_modules",
             part.profile_shift / m,
-            f"less than {(part.dedendum - rho) / m:.4f}",
+            f"at least {min_shift / m:.4f}: undercut{end}",
         )
-    start = design.pinion_base_radius * np.hypot(1, pinion.junction_roll(design))
-    if design.pinion_tip_radius - part.tip_chamfer <= start + 0.1 * m:
-        available_length = design.pinion_tip_radius - start - 0.1 * m
+    largest = part.dedendum - part.rack_tip_radius / cos(design.taper_angle) - growth
+    if part.profile_shift >= largest - 1e-3 * m:
+        _refuse("pinion.profile_shift_modules", part.profile_shift / m, f"less than {largest / m:.4f}{end}")
+    start = float(design.pinion_base_radius * np.hypot(1, pinion.junction_roll(design, y)))
+    tip = float(pinion.tip_radius(design, y))
+    if tip - part.tip_chamfer <= start + 0.1 * m:
+        available_length = tip - start - 0.1 * m
         _refuse(
             "pinion.tip_chamfer_mm",
             1e3 * part.tip_chamfer,
-            f"less than {1e3 * max(available_length, 0):.3f}: no flank left",
+            f"less than {1e3 * max(available_length, 0):.3f}: no flank left{end}",
         )
-    land = 2 * pinion.tip_half_angle(design) * design.pinion_tip_radius
-    if land < THINNEST_LAND * m:
-        key, value = (
-            ("tip_chamfer_mm", 1e3 * part.tip_chamfer)
-            if part.tip_chamfer
-            else ("addendum_modules", part.addendum / m)
-        )
-        _refuse(f"pinion.{key}", value, f"less: the tip land would be {1e3 * land:.3f} mm wide")
-    deepest = design.pinion_root_radius - 0.6 * m
-    if part.bore_radius > deepest:
-        _refuse("pinion.bore_radius_mm", 1e3 * part.bore_radius, f"at most {1e3 * deepest:.3f}")
 
 
 def _check_relief(design: PairDesign) -> None:
     """Refuse reliefs and crowning of the pinion above MAX_RELIEF modules, or longer than its flank."""
     part = design.pinion
-    flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
+    flank = min(
+        side.pinion_base_radius * float(pinion.tip_roll(side, y) - pinion.junction_roll(side, y))
+        for side in _sides(design)
+        for y in _section_places(design)
+    )
     crowning, half = part.lead_crowning, 0.5 * (design.face_gear.outer_radius - design.face_gear.inner_radius)
     if crowning.amount > 0.0 and crowning.start >= half:
         requirement = (
@@ -135,7 +188,7 @@ def _check_gear_modifications(design: PairDesign) -> None:
         MAX_RELIEF * design.module,
     )
     half = 0.5 * (gear.outer_radius - gear.inner_radius)
-    depth = float(design.gear_tip_plane - flank_end(design, gear.inner_radius)[2])
+    depth = min(float(depth_below_tip(side, flank_end(side, gear.inner_radius))) for side in _sides(design))
     for name, relief, available_length, length_name in (
         ("tip_relief", modifications.tip_relief, depth, "depth at the inner end"),
         ("root_relief", modifications.root_relief, depth, "depth at the inner end"),
@@ -146,7 +199,7 @@ def _check_gear_modifications(design: PairDesign) -> None:
         _check_modification(f"face_gear.modifications.{name}", relief, available_length, at_most, length_name)
     for name, crowning, reach in (
         ("lead_crowning", modifications.lead_crowning, half),
-        ("profile_crowning", modifications.profile_crowning, gear.addendum),
+        ("profile_crowning", modifications.profile_crowning, face_gear.pitch_depth(design)),
     ):
         key_and_face = f"face_gear.modifications.{name}", "the gear's flank"
         _check_crowning_at_end(crowning, reach, at_most, *key_and_face)
@@ -224,7 +277,11 @@ def check_shaper(design: PairDesign) -> None:
         requirement = f"less: the shaper's tip land would be {land:.3f} mm wide"
         _refuse("shaper.addendum_modules", design.shaper.addendum / m, requirement)
     rounding = design.shaper.tip_rounding
-    deepest = design.shaper_tip_radius - design.shaper_base_radius
+    ends = [
+        design.shaper_tip_radius + (y - design.middle) * tan(design.taper_angle)
+        for y in _section_places(design)
+    ]
+    deepest = min(ends) - max(side.shaper_base_radius for side in _sides(design))
     if rounding >= deepest or _land_left(design, rounding) < 0:
         max_rounding = deepest
         if _land_left(design, deepest) < 0:
@@ -234,9 +291,15 @@ def check_shaper(design: PairDesign) -> None:
 
 
 def _land_left(design: PairDesign, rounding: float) -> float:
-    """Return the width (m) of the shaper's tip land with a tip rounding (m), less the thinnest allowed."""
-    tool = replace(design, shaper=replace(design.shaper, tip_rounding=rounding))
-    return 2 * face_gear_fillet.root_half_angle(tool) * tool.gear_pitch_radius - THINNEST_LAND * tool.module
+    """Return the width (m) of the shaper's tip land with a tip rounding (m), less the thinnest allowed, on
+    its rolling cylinder and at the end of the face where it is thinnest.
+    """
+    family = replace(design.family, shaper_tip_rounding=rounding)
+    section_y = np.array(_section_places(design))
+    radius = family.rounding_centre + (section_y - family.middle) * family.taper
+    land = shaper_land(family, section_y) / radius * family.shaper_pitch_radius
+    thinnest = THINNEST_LAND if design.is_spur else THINNEST_ROOT
+    return float(np.min(np.where(np.isnan(land), -inf, land))) - thinnest * design.module
 
 
 @lru_cache(maxsize=16)
@@ -251,6 +314,9 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
         )
     if gear.rim_thickness < 0.5 * m:
         _refuse("face_gear.rim_thickness_mm", 1e3 * gear.rim_thickness, f"at least {500 * m:.3f}")
+    if abs(design.offset) >= gear.inner_radius:
+        requirement = f"within {1e3 * gear.inner_radius:.3f}, the gear's inner radius"
+        _refuse("offset_mm", 1e3 * design.offset, requirement)
     limits = radius_limits(design)
     face = face_range(design, limits)
     for key, value in (("inner_radius_mm", gear.inner_radius), ("outer_radius_mm", gear.outer_radius)):
@@ -264,19 +330,30 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
             f"at least {min_radius:.3f}, half a module of face",
         )
     _check_width(design)
+    for side in _sides(design):
+        _check_flank(side)
+    return limits
+
+
+def _check_flank(design: PairDesign) -> None:
+    """Refuse a gear whose drive flank is not generated up to the tip, or has no height, somewhere on the
+    face.
+    """
+    gear, m = design.face_gear, design.module
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
-    top = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2].min()
-    if design.gear_tip_plane > top:
-        max_addendum = top - design.pitch_plane
+    roll, _ = face_gear.tip_parameters(design, radius)
+    if np.min(roll) < 0.0:
+        start = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2]
+        above_datum = 1.0 - (face_gear.tip_height(design, radius) - start) / face_gear.pitch_depth(design)
+        max_addendum = above_datum.min() * gear.addendum
         _refuse(
             "face_gear.addendum_modules",
             gear.addendum / m,
             f"less than {max_addendum / m:.4f}: no involute generates it",
         )
-    roll, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    if np.max(roll) >= design.shaper_tip_roll:
+    end, _ = face_gear.end_parameters(design, radius)
+    if np.any(roll >= end):
         _refuse("face_gear.addendum_modules", gear.addendum / m, "more: the flank has no height")
-    return limits
 
 
 def _check_width(design: PairDesign) -> None:
@@ -284,7 +361,7 @@ def _check_width(design: PairDesign) -> None:
     axis.
     """
     gear, width = design.face_gear, design.pinion.width
-    min_width, max_width = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
+    min_width, max_width = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.middle
     if width < min_width:
         requirement = f"at least {1e3 * min_width:.3f}, half the gear's face"
         _refuse("pinion.width_mm", 1e3 * width, requirement)
@@ -292,3 +369,9 @@ def _check_width(design: PairDesign) -> None:
         _refuse(
             "pinion.width_mm", 1e3 * width, f"less than {1e3 * max_width:.3f}: it reaches the gear's axis"
         )
+    numbers = PairNumbers.of_design(design)
+    if numbers.last_end - numbers.first_end < min_width * (1.0 - 1e-9):
+        whole = PairNumbers.of_design(replace(design, pinion=replace(design.pinion, width=2 * design.middle)))
+        low, high = whole.first_end + min_width - width / 2, whole.last_end - min_width + width / 2
+        requirement = f"from {1e3 * low:.3f} to {1e3 * high:.3f}, to cover half of the gear's face"
+        _refuse("pinion.middle_mm", 1e3 * design.middle, requirement)

@@ -5,7 +5,8 @@ import numpy as np
 from facegear.harmonics import Harmonics
 from facegear.machine.kinematics import PRINTED_KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.machine.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
+from facegear.machine.machine import Damping, Machine, OpenFlanks
+from facegear.machine.torques import balanced_torques, pinion_torques
 
 PLACES = (
     ("tail idler", Role.TAIL, 0.0),
@@ -67,3 +68,9 @@ def make_machine(
 def drive_rows(layout):
     """Rows of the drive flanks alone, (meshes, dof)."""
     return layout.kinematics.flank_rows(layout)[: len(layout.meshes)]
+
+
+def mesh_parts(layout):
+    """Tangential and separating part of the flanks' rows of spur teeth, (meshes, dof) each."""
+    drive, back = np.split(layout.kinematics.flank_rows(layout), 2)
+    return 0.5 * (drive - back), 0.5 * (drive + back)

@@ -10,7 +10,6 @@ from pathlib import Path
 from facegear.arrays import Array
 from facegear.teeth.bounded_contact import Removal
 from facegear.teeth.design import AssemblyErrors
-from facegear.teeth.family_contact import PinionPose
 from facegear.teeth.tooth_family import Rack, ToothFamily
 
 FOLDER = Path(__file__).parents[1] / "unit" / "teeth" / "public"
@@ -27,8 +26,8 @@ PARAMETERS = {
 }
 CROWNING_UM = {"P1": (4, 8), "P2": (4, 8), "P3": (3, 6), "P4": (4, 8)}
 """Profile and lead crowning of the crowned pinions, um."""
-ERRORS = PinionPose(AssemblyErrors(60e-6, radians(0.02), -40e-6), 150e-6)
-"""Errors of assembly of the public numbers: offset, shaft angle, axial shift, and the pinion outwards."""
+ERRORS = AssemblyErrors(60e-6, radians(0.02), -40e-6, 150e-6)
+"""Errors of assembly of the public numbers: offset, shaft angle, axial shifts of gear and pinion."""
 
 
 def public_design(name: str) -> ToothFamily:

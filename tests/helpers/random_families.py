@@ -6,7 +6,6 @@ from math import cos, hypot, radians, sin, sqrt
 import numpy as np
 
 from facegear.teeth.design import AssemblyErrors
-from facegear.teeth.family_contact import PinionPose
 from facegear.teeth.family_limits import family_limits
 from facegear.teeth.tooth_family import Rack, ToothFamily
 
@@ -66,7 +65,7 @@ def with_possible_face(family: ToothFamily) -> ToothFamily:
     return family
 
 
-def random_pose(rng: np.random.Generator, module: float) -> PinionPose:
+def random_errors(rng: np.random.Generator, module: float) -> AssemblyErrors:
     """Return small random errors of assembly."""
     offset, shift, outwards = rng.uniform(-0.02, 0.02, 3) * module
-    return PinionPose(AssemblyErrors(offset, rng.uniform(-3e-4, 3e-4), shift), outwards)
+    return AssemblyErrors(offset, rng.uniform(-3e-4, 3e-4), shift, outwards)

@@ -52,7 +52,8 @@ def spur_values(design: PairDesign) -> dict[str, np.ndarray]:
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 5)[:, None]
     last = design.shaper_tip_roll
     deepest = face_gear.flank_point(design, last, face_gear.psi_at(design, radius, last))[..., 2]
-    height = design.gear_tip_plane + np.linspace(0.0, 0.9, 4) * (deepest - design.gear_tip_plane)
+    tip = face_gear.tip_height(design, radius)
+    height = tip + np.linspace(0.0, 0.9, 4) * (deepest - tip)
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, height)
     values["flank"] = np.stack([roll, psi])
     values["flank points"] = face_gear.flank_point(design, roll, psi)
@@ -64,17 +65,21 @@ def spur_values(design: PairDesign) -> dict[str, np.ndarray]:
     values["fillet"] = np.stack(face_gear_fillet.fillet_section(design, radius, slopes))
     values["fillet normals"] = face_gear_fillet.fillet_normal(design, radius, slopes)
     values["fillet slopes"] = slopes
-    values["root"] = np.array([face_gear_fillet.root_half_angle(design), design.gear_root_plane])
+    radii = radius[0, 0]
+    values["root"] = np.array(
+        [face_gear_fillet.root_half_angle(design, radii), face_gear_fillet.root_height(design, radii)]
+    )
     limits = radius_limits(design)
     values["limits"] = np.array([limits.inner, limits.outer, limits.outer_planar, tip_plane_radius(design)])
-    start = pinion.junction_roll(design)
+    y = design.middle
+    start = float(pinion.junction_roll(design, y))
     rolls = np.linspace(max(start, 0.0), design.pinion_tip_roll, 5)
-    values["involute"] = np.stack(pinion.involute_point(design, rolls))
-    values["involute normals"] = np.stack(pinion.involute_normal(design, rolls))
+    values["involute"] = np.stack(pinion.involute_point(design, rolls, y))
+    values["involute normals"] = pinion.involute_normal(design, rolls, y)[:, [0, 2]].T
     gamma = np.linspace(design.pressure_angle, np.pi / 2, 5)
-    values["trochoid"] = np.stack(pinion.trochoid_point(design, gamma))
-    values["trochoid normals"] = np.stack(pinion.trochoid_normal(design, gamma))
-    values["pinion"] = np.array([start, pinion.tip_half_angle(design), pinion.root_half_angle(design)])
+    values["trochoid"] = np.stack(pinion.trochoid_point(design, gamma, y))
+    values["trochoid normals"] = pinion.trochoid_normal(design, gamma, y)[:, [0, 2]].T
+    values["pinion"] = np.array([start, pinion.tip_half_angle(design, y), pinion.root_half_angle(design)])
     curvatures = relative_curvatures(design, np.linspace(0.3, 0.6, 4), design.pressure_angle)
     values["curvatures"] = np.stack(curvatures)
     numbers = PairNumbers.of_design(design)

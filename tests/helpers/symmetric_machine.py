@@ -5,8 +5,8 @@ from functools import cache
 
 import facegear
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.plans import sweep_plan
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.motion.steady_state.simulate import build_model
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.harmonics import Harmonics
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)

@@ -10,11 +10,21 @@ from hypothesis import strategies as st
 from facegear._kernels import bearings, flanks, samples, statics, strength
 from facegear.machine.block_statics import Springs
 from facegear.meshing.law import LinearHeld, LoadDependentHeld
+from facegear.teeth.rays import Blank, Guess, Shaper
 
-BLANK_FIELDS = (
-    *("base", "ratio", "space", "lift", "tip_centre", "tip_rounding", "tip_roll", "edge_start", "inner"),
-    *("outer", "tip_plane", "root_plane", "root_start", "pitch", "aside", "fillet_top", "fillet_start"),
-)
+
+def make_blank():
+    """A gear of ones."""
+    sides, lines = ("flank", "back"), ("tip", "root", "middle")
+    blank = SimpleNamespace(**dict.fromkeys({*Blank._fields} - {*sides, *lines}, 1.0))
+    for name in sides:
+        guess = SimpleNamespace(**dict.fromkeys(Guess._fields, 1.0))
+        guess.roll, guess.psi, guess.edge, guess.fillet = (np.ones(count) for count in (6, 6, 3, 17))
+        side = SimpleNamespace(shaper=SimpleNamespace(**dict.fromkeys(Shaper._fields, 1.0)), guess=guess)
+        setattr(blank, name, side)
+    for name in lines:
+        setattr(blank, name, SimpleNamespace(height=1.0, slope=1.0))
+    return blank
 
 
 def make_rays():
@@ -24,7 +34,7 @@ def make_rays():
     sample |= {"inner": np.ones(4, bool), "spacing": 1.0, "radii": np.ones(2)}
     rays = np.ones((2, 3))
     return {
-        "blank": SimpleNamespace(**dict.fromkeys(BLANK_FIELDS, 1.0)),
+        "blank": make_blank(),
         "sample": SimpleNamespace(**sample),
         "starts": rays,
         "ways": rays,
@@ -208,8 +218,7 @@ def arrays_of(arguments):
         if isinstance(value, np.ndarray):
             yield arguments, name
         elif isinstance(value, SimpleNamespace):
-            fields = vars(value)
-            yield from ((fields, inner) for inner, part in fields.items() if isinstance(part, np.ndarray))
+            yield from arrays_of(vars(value))
         elif isinstance(value, tuple):
             fields = value._asdict()
             arguments[name] = record = SimpleNamespace(**fields)
@@ -293,7 +302,7 @@ def test_an_output_that_would_be_copied_is_refused(case):
 
 def test_a_record_without_a_field_is_refused():
     arguments = make_rays()
-    del arguments["blank"].base
+    del arguments["blank"].flank.shaper.base
     with pytest.raises(AttributeError, match="base"):
         flanks.cut_rays(**arguments)
 

@@ -32,14 +32,15 @@ MAY_IMPORT = {
     "contact": {"teeth", "meshing", "sparse"},
     "parts": {"teeth", "sparse", "contact"},
     "bearings": {"parts"},
-    "machine": {"teeth", "meshing", "parts", "bearings"},
+    "casing": set(),
+    "machine": {"teeth", "meshing", "parts", "bearings", "casing"},
     "motion": {"machine", "meshing"},
     "sharing": {"motion", "machine", "meshing"},
     "strength": {"teeth", "contact", "bearings", "machine", "motion", "sharing"},
     "lubrication": {"teeth", "contact"},
     "build": {
-        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion", "sharing"),
-        *("strength", "lubrication"),
+        *("schema", "teeth", "meshing", "contact", "parts", "bearings", "casing", "machine", "motion"),
+        *("sharing", "strength", "lubrication"),
     },
     "exchange": {"schema", "build", "teeth", "meshing", "machine", "motion"},
     "studies": {
@@ -51,7 +52,18 @@ MAY_IMPORT = {
     },
     "report": {"schema", "build", "teeth", "meshing", "contact", "machine", "motion", "sharing"},
     "pipeline": {
-        *("schema", "build", "teeth", "meshing", "contact", "parts", "bearings", "machine", "motion"),
+        *(
+            "schema",
+            "build",
+            "teeth",
+            "meshing",
+            "contact",
+            "parts",
+            "bearings",
+            "casing",
+            "machine",
+            "motion",
+        ),
         *("sharing", "strength", "lubrication", "studies", "exchange", "report"),
     },
     "door": {"schema", "build", "machine", "exchange", "studies", "pipeline"},
@@ -176,10 +188,10 @@ def test_array_types_have_their_names_from_one_module():
         assert not {f"NDArray[{name}]" for name in named} & parsed(module)[2], module
 
 
-MOST_MODULES, MOST_LINES, LEAST_MEDIAN = 470, 450, 110
+MOST_MODULES, MOST_LINES, LEAST_MEDIAN = 490, 450, 110
 """Limits of the package: modules, lines of the longest one, median of their lines.
 
-Modules were 430 when the rooms were made; 40 more are for bearings, casing and other kinds of teeth.
+Modules were 430 when the rooms were made; 60 more are for bearings, casing and other kinds of teeth.
 """
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import facegear
 from facegear import __main__ as command_line
-from facegear.exchange.rexs import Shaft, Spur, Unit, write_rexs
+from facegear.exchange.rexs import CylindricalGear, Shaft, Unit, write_rexs
 from facegear.gearbox import load
 from facegear.schema.yaml_file import read_yaml
 
@@ -78,8 +78,8 @@ def test_what_is_not_given_is_asked_and_an_empty_answer_takes_the_default(folder
 def test_pinions_of_a_rexs_file_are_taken_over_and_what_it_lacks_is_asked_for_by_name(
     folder, monkeypatch, capsys
 ):
-    spur = Spur(teeth=25, module=4.0, width=33.0, pressure_angle=22.5, bore=20.0)
-    shafts = [Shaft(name, 1.5, 7e7, None, spur) for name in "abc"]
+    gear = CylindricalGear(25, 4.0, 33.0, right_angle=22.5, left_angle=22.5, bore=20.0)
+    shafts = [Shaft(name, 1.5, 7e7, None, gear) for name in "abc"]
     write_rexs("unit.rexs", Unit((*shafts, Shaft("gear", 9.0, 8e9, None)), 206e3, 0.3), DATE, "1")
     monkeypatch.setattr("sys.stdin", io.StringIO())
     assert command_line.main(("new", "own.yaml", "--from", "unit.rexs")) == 1
@@ -94,7 +94,7 @@ def test_pinions_of_a_rexs_file_are_taken_over_and_what_it_lacks_is_asked_for_by
     pair = values["tooth_pair"]
     assert (pair["pinion_teeth"], pair["module_mm"], pair["pressure_angle_deg"]) == (25, 4, 22.5)
     assert (pair["pinion"]["width_mm"], pair["pinion"]["bore_radius_mm"]) == (33, 20)
-    other = Shaft("d", 1.5, 7e7, None, Spur(26, 4.0, None, None, None))
+    other = Shaft("d", 1.5, 7e7, None, CylindricalGear(26, 4.0, None, None, None, None))
     write_rexs("two.rexs", Unit((shafts[0], other), None, None), DATE, "1")
     assert command_line.main(("new", "two.yaml", "--from", "two.rexs", *known)) == 1
     refusal = "two.rexs: cylindrical gears = 25 teeth of 4 mm, 26 teeth of 4 mm: must be equal pinions\n"

@@ -174,12 +174,12 @@ def _angle(design, position):  # type: ignore[no-untyped-def]
 
 def _roll(design, facets, at):  # type: ignore[no-untyped-def]
     """Roll angle along the flank, whose nodes are evenly spaced in its square, from tip to root."""
-    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    top, bottom = design.pinion_tip_roll, float(pinion.junction_roll(design, design.middle))
     return np.sqrt(top**2 + at / facets * (bottom**2 - top**2))
 
 
 def _flank_position(design, facets, roll):  # type: ignore[no-untyped-def]
-    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    top, bottom = design.pinion_tip_roll, float(pinion.junction_roll(design, design.middle))
     return (top**2 - roll**2) / (top**2 - bottom**2) * facets
 
 
@@ -188,8 +188,8 @@ def _separation(designs, facets, at, phi1, tooth):  # type: ignore[no-untyped-de
     beside it.
     """
     roll = _roll(designs[0], facets[0], at)
-    points = pinion.cartesian(*pinion.involute_point(designs[0], roll), 0.0)
-    nx, nz = pinion.involute_normal(designs[0], roll)
+    points = pinion.cartesian(*pinion.involute_point(designs[0], roll, 0.0), 0.0)
+    nx, _, nz = pinion.involute_normal(designs[0], roll, 0.0).T
     normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
     centre = standard_centre(*designs)
     gap, hit = involute_separation(designs[0], designs[1], points, normals, phi1, tooth, centre)
@@ -217,7 +217,7 @@ def _constraints(
         normals, gap, hit = _separation(designs, facets, at, phi1, tooth)
         on = np.isfinite(hit) & (gap < CLOSE)
         along = rotate(normals[on][:, [0, 2]], tooth * pitches[0])
-        n2 = np.stack(pinion.involute_normal(designs[1], hit[on]), axis=1)
+        n2 = pinion.involute_normal(designs[1], hit[on], 0.0)[:, [0, 2]]
         matrices.append(
             _rows(pinion_chain, at[on], along, size, 0)
             + _rows(

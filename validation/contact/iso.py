@@ -63,5 +63,9 @@ def contact_ratio(first: PairDesign, second: PairDesign) -> float:
         pitch = gear.pinion_base_radius * tan(gear.pressure_angle)
         reach = gear.pinion_base_radius * gear.pinion_tip_roll - pitch
         other_pitch = mating_gear.pinion_base_radius * tan(mating_gear.pressure_angle)
-        total += min(reach, other_pitch - mating_gear.pinion_base_radius * junction_roll(mating_gear))
+        total += min(
+            reach,
+            other_pitch
+            - mating_gear.pinion_base_radius * float(junction_roll(mating_gear, mating_gear.middle)),
+        )
     return total / (2 * pi * first.pinion_base_radius / first.pinion.teeth)

@@ -60,7 +60,7 @@ class SectorPair:
             Naming position and torque.
         """
         pair = _SectorAtPosition(self, position)
-        guess = first_turn(torques, pair.base_radius, self.flanks.pinion.width)
+        guess = first_turn(torques, pair.normal_arm, self.flanks.pinion.width)
         return solve_position(pair, torques, guess)[0]
 
 
@@ -73,8 +73,8 @@ class _SectorAtPosition:
     unloaded_error = 0.0
 
     @property
-    def base_radius(self) -> float:
-        return self.sectors.flanks.design.pinion_base_radius
+    def normal_arm(self) -> float:
+        return self.sectors.flanks.design.normal_arm
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         sectors, flanks = self.sectors, self.sectors.flanks

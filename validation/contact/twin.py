@@ -176,7 +176,7 @@ class _TwinAtPosition:
     unloaded_error = 0.0
 
     @property
-    def base_radius(self) -> float:
+    def normal_arm(self) -> float:
         return self.model.pinion.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
@@ -230,13 +230,13 @@ def involute_separation(
     )
     start, along = rotate(points[:, [0, 2]], turn), rotate(normals[:, [0, 2]], turn)
     start, along = (rotate(-vector, back) for vector in (start + np.array([0.0, centre]), along))
-    low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
+    low, high = float(pinion.junction_roll(model_gear, model_gear.middle)), model_gear.pinion_tip_roll
     roll, distance = np.full(len(points), 0.5 * (low + high)), np.zeros(len(points))
     base = model_gear.pinion_base_radius
     for _ in range(50):
-        radius, angle = pinion.involute_point(model_gear, roll)
+        radius, angle = pinion.involute_point(model_gear, roll, model_gear.middle)
         surface = np.stack([radius * np.sin(angle), -radius * np.cos(angle)], axis=1)
-        nx, nz = pinion.involute_normal(model_gear, roll)
+        nx, _, nz = np.moveaxis(pinion.involute_normal(model_gear, roll, model_gear.middle), -1, 0)
         tangent = base * roll[:, None] * np.stack([nz, -nx], axis=1)
         miss = start + distance[:, None] * along - surface
         determinant = tangent[:, 0] * along[:, 1] - tangent[:, 1] * along[:, 0]
@@ -297,7 +297,7 @@ def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]
     surface, side = model.surface, model.gear_side
     lattice = Lattice(side.shape, surface.lattice.refinement, flank_rows=side.flank_rows)
     on_flank = ~surface.lattice.in_fillet(surface.at)
-    low, high = pinion.junction_roll(model.gear), model.gear.pinion_tip_roll
+    low, high = float(pinion.junction_roll(model.gear, model.gear.middle)), model.gear.pinion_tip_roll
     depth = 3 * limit * model.pinion.pinion_base_radius + 20e-6
     candidates = []
     for tooth in PAIRS.tolist():

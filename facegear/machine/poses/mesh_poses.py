@@ -79,7 +79,7 @@ def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displace
     return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, mean_radius)))
 
 
-def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
+def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float, with_pinions: bool = True) -> Array:
     """Return the derivatives of PARTS by the coordinates.
 
     Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
@@ -95,6 +95,8 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
         Bodies and mesh geometry.
     mean_radius : float
         Position of the middle of the pinion's face on its axis, m.
+    with_pinions : bool
+        Whether tilts of pinions with seats on a casing count.
 
     Returns
     -------
@@ -120,11 +122,9 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
             offset[mesh, yawing] = -side * mean_radius
         if g in layout.first_tilts:
             tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
-            height = side * layout.tilt_distance(g)
-            shift[mesh, tilts] = -side * mean_radius * tangent
-            angle[mesh, tilts] = -side * tangent
-            offset[mesh, tilts] = -side * height * away
-            outward[mesh, tilts] = height * tangent
+            rows[:, mesh, tilts] = _gear_tilt_rows(layout, i, g, mean_radius)
+    if linear.seat_tilts is not None:
+        _add_seat_tilts(linear, layout, mean_radius, rows, with_pinions)
     _bending(linear, layout, shift)
     angle += leaning_rows(linear, layout)
     if linear.slopes is not None:
@@ -132,6 +132,30 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
         pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
         offset += sides * pitch_radius / mean_radius * linear.slopes[1]
     return rows
+
+
+def _gear_tilt_rows(layout: Layout, pinion: int, gear: int, mean_radius: float) -> Array:
+    """Return the derivatives (4, 2) of PARTS of a mesh by tilt_x and tilt_y of its gear, m/rad and
+    rad/rad.
+    """
+    side, at = layout.gears[gear].sign, layout.angles[pinion]
+    tangent, away = np.array([np.cos(at), np.sin(at)]), np.array([np.sin(at), -np.cos(at)])
+    height = side * layout.tilt_distance(gear)
+    return np.array([-side * height * away, -side * mean_radius * tangent, -side * tangent, height * tangent])
+
+
+def _add_seat_tilts(
+    linear: LinearModel, layout: Layout, mean_radius: float, rows: Array, with_pinions: bool
+) -> None:
+    """Add to `rows` (4, meshes, n) what bodies that tilt with their seats on a casing add, in place."""
+    assert linear.seat_tilts is not None
+    tilts = linear.over_all(linear.seat_tilts)
+    for mesh, (i, g) in enumerate(layout.meshes):
+        side = layout.gears[g].sign
+        rows[:, mesh] += _gear_tilt_rows(layout, i, g, mean_radius) @ tilts[len(layout.pinions) + g]
+        if with_pinions:
+            rows[2, mesh] += side * tilts[i, 0]
+            rows[0, mesh] -= side * mean_radius * tilts[i, 1]
 
 
 def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
@@ -220,7 +244,7 @@ class ForceDirections:
         (2 meshes, n) array
             m for a unit of each coordinate, drive flanks first.
         """
-        parts = pose_rows(model, self.layout, self.mean_radius)
+        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=False)
         tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
         parts[:, :, np.isin(model.labels, tilts)] = 0.0
         return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))

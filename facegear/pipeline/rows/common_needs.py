@@ -6,8 +6,12 @@ from facegear.schema.changes import TEETH
 
 PAIR: Needs = {"tooth_pair": "tooth_pair"}
 """Need of the tooth pair."""
-MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
-"""Needs of the machine: its section, and the keys of the teeth that it takes."""
+TEETH_OF_MACHINE = ComputedValue(
+    arguments.teeth_of_machine, (*(f"tooth_pair.{key}" for key in TEETH), "tooth_pair.pinion.middle_mm")
+)
+"""What the machine takes of the tooth pair."""
+MACHINE: Needs = {"transmission": "transmission", "teeth": TEETH_OF_MACHINE}
+"""Needs of the machine: its section, and what it takes of the teeth."""
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 """Need of the operating speed."""
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
@@ -31,10 +35,12 @@ MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 """Mesh stiffness, and the mesh law where the config asks for it."""
 HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
-BODIES = {
-    "bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears),
-}
-"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend."""
+ELASTIC_GEARS = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
+"""Face gears that bend."""
+BODIES = {**ELASTIC_GEARS, "casing": From("casing", "reduced", when=machine_conditions.casing)}
+"""Sources of what every stage of the machine takes, at rest and in motion: face gears that bend, and a
+casing.
+"""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=conditions.single_teeth)}
 """Teeth that deviate from the others."""
 MOTION_INPUTS = {

@@ -28,7 +28,16 @@ ROWS = (
         files={
             "pair": File(
                 "geometry/pair.json",
-                ("design_si", "radii_mm", "limits_mm", "smallest_gap", "unloaded", "backlash_um"),
+                (
+                    "design_si",
+                    "blanks",
+                    "flanks",
+                    "radii_mm",
+                    "limits_mm",
+                    "smallest_gap",
+                    "unloaded",
+                    "backlash_um",
+                ),
             ),
             "flanks": File(
                 "geometry/flanks.npz", {"pinion_section": (None, 2), "gear_flank": (None, None, 3)}

@@ -1,7 +1,15 @@
 """Machines with their tolerances, and designs that are searched."""
 
 from facegear.pipeline import arguments, conditions, machine_conditions
-from facegear.pipeline.rows.common_needs import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
+from facegear.pipeline.rows.common_needs import (
+    ACCURACY,
+    ELASTIC_GEARS,
+    HARMONICS,
+    OPTIONS,
+    PAIR,
+    SHARING,
+    SPEED,
+)
 from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
@@ -18,7 +26,7 @@ SAMPLE_NEEDS: Needs = {
 """Needs of the samples of tolerances."""
 SAMPLED_FROM = {
     **HARMONICS,
-    **BODIES,
+    **ELASTIC_GEARS,
     **{name: From("contact", name, when=arguments.stored_rubbing) for name in ("ltca", "pressure")},
     "flanks": From(
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.sampled_contact
@@ -39,7 +47,7 @@ SEARCH_NEEDS: Needs = {
 """Needs of the search."""
 SEARCHED_FROM = {
     **HARMONICS,
-    **BODIES,
+    **ELASTIC_GEARS,
     "flanks": From(
         "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.searched_contact
     ),

@@ -11,7 +11,7 @@ from facegear.arrays import Array, Arrays
 from facegear.build.plans import contact_plan, stiffness_request
 from facegear.build.tooth_pair import ToothPair, pair, pair_design, single_teeth
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
-from facegear.contact.gear_flank import contact_model, from_arrays
+from facegear.contact.gear_flank import every_flank_from_arrays, flank_models
 from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.options import ContactOptions
 from facegear.contact.pattern import FILLET_CONTACT
@@ -28,7 +28,7 @@ from facegear.pipeline.outcome import Outcome
 from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
-from facegear.teeth.placement import FLANKS, distinct_pairs, pair_at
+from facegear.teeth.placement import FLANKS, nominal_pairs, nominal_teeth, pair_at
 
 
 def contact(
@@ -67,7 +67,7 @@ def contact(
         Naming position and torque.
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
-    flanks = from_arrays(pinion), from_arrays(face_gear)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     analysis = contact_analysis(teeth.design, teeth.materials, flanks, plan)
     return Outcome(contents(analysis), _mean_stiffness(analysis.ltca[0]))
 
@@ -187,15 +187,15 @@ def tooth_errors(
     NotConverged
         Where contact does not converge.
     """
-    sides: dict[Body, ContactSide] = {
-        "pinion": from_arrays(pinion).side,
-        "face_gear": from_arrays(face_gear).side,
-    }
     design = pair_design(tooth_pair)
+    bodies = nominal_pairs(design)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     curves: dict[str, Array] = {}
     for number, side in enumerate(FLANKS):
         teeth = single_teeth(tooth_pair, side)
         flank_pair = pair_at(design, "upper", side)
+        on_pinion, on_gear = flanks[bodies.index(nominal_teeth(flank_pair))]
+        sides: dict[Body, ContactSide] = {"pinion": on_pinion.side, "face_gear": on_gear.side}
         if side == "back":  # seen in a mirror, teeth come into mesh the other way round
             teeth = {body: (tooth_indices[0], *tooth_indices[:0:-1]) for body, tooth_indices in teeth.items()}
         variant = int(loads["flank_variant"][0, number])
@@ -288,16 +288,14 @@ def mesh_law(
     plan = contact_plan(contact)
     request = stiffness_request(mesh_stiffness)
     design = pair(tooth_pair).design
-    model = contact_model(design, from_arrays(pinion), from_arrays(face_gear))
-    different, numbers = distinct_pairs(design)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
+    models, numbers = flank_models(design, flanks)
     scale = _scale(ltca, request)
     largest = plan.torques[-1] / scale
-    contacts = [
-        flank_contacts(model.of(variant), plan.positions, largest, plan.options) for variant in different
-    ]
+    contacts = [flank_contacts(model, plan.positions, largest, plan.options) for model in models]
     tables, errors = fitted_tables(contacts, request.order)
     tables = [table.scale(scale) for table in tables]
-    levels = level_table(tables, errors, numbers, design.pinion_base_radius)
+    levels = level_table(tables, errors, numbers, design.normal_arm)
     rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
     summary = (
         f"{count_noun(tables[0].levels.size - 1, 'level')} up to {1e6 * tables[0].levels[-1]:.3g} um, "
@@ -353,7 +351,7 @@ def flank_contacts(
         return contact.ste - contact.unloaded_error
 
     return FlankContacts(
-        np.array(torques) / model.design.pinion_base_radius,
+        np.array(torques) / model.design.normal_arm,
         by_torque([approach(contact) for contact in contacts]),
         by_torque([contact.k_local for contact in contacts]),
     )

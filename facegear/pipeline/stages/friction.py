@@ -296,7 +296,8 @@ def _states(
     for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
         machine = inputs.at_torque(load.torque_n_m).build()
-        arm = machine.layout.pinion_arm
+        layout = machine.layout
+        arm = np.where(rows["flank"] == "back", layout.back_arm, 1.0) * layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
         names = rows["mesh"].tolist(), rows["flank"].tolist()

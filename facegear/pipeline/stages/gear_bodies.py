@@ -8,7 +8,8 @@ import pandas as pd
 
 from facegear.build.elastic_bodies import contact_patch, elastic_gears, fitted_shape
 from facegear.build.lumped_model import given_torques
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
 from facegear.machine.layout import Layout

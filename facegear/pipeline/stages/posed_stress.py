@@ -11,7 +11,7 @@ from facegear.arrays import AnyArray, Arrays
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import met_contacts
-from facegear.contact.gear_flank import from_arrays
+from facegear.contact.gear_flank import every_flank_from_arrays, flanks_of
 from facegear.machine.machine import Machine
 from facegear.machine.poses.fixed_point import OperatingPose, carrying_pairs
 from facegear.machine.poses.fixed_point import operating_pose as fixed_point
@@ -89,7 +89,7 @@ def posed_stress(
         (pair_design, tuple(sorted({*plan.torques, mesh_torque or plan.torques[0]})))
         for pair_design, mesh_torque in zip(pairs.designs, pairs.torques, strict=True)
     ]
-    flanks = from_arrays(pinion), from_arrays(face_gear)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     arrays: dict[str, AnyArray] = {}
     tables = []
     for number, posed_contact in enumerate(
@@ -97,7 +97,7 @@ def posed_stress(
     ):
         roots: dict[str, RootStress] = {
             body: replace(passing(body, flank, posed_contact.loads), error=stress[f"{body}_error"])
-            for body, flank in zip(BODIES, flanks, strict=True)
+            for body, flank in zip(BODIES, flanks_of(pairs.designs[number], design, flanks), strict=True)
         }
         arrays |= root_arrays_of(number, roots)
         tables.append(posed_contact.by_torque.assign(contact=number))

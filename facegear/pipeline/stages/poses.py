@@ -10,7 +10,7 @@ from facegear.arrays import AnyArray, Array, Arrays
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import PosedContact, met_contacts, posed_contacts
-from facegear.contact.gear_flank import GearFlank, from_arrays
+from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of, from_arrays
 from facegear.contact.nodal_loads import REACTION_COLUMNS
 from facegear.contact.pattern import pattern_margins
 from facegear.errors import FacegearError
@@ -286,11 +286,15 @@ def operating_pose(
     torque, torques = float(result.torque[worst]), [torque or plan.torques[0] for torque in pairs.torques]
     requests = [(replace(worst_design, assembly=rest), (torque or plan.torques[0],))]
     requests += [(design_at_pose, (at,)) for design_at_pose, at in zip(pairs.designs, torques, strict=True)]
-    flanks = from_arrays(pinion), from_arrays(face_gear)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     assembled_there, *running = met_contacts(design, pair_here.materials, flanks, plan, requests)
     contacts = [assembled_there, running[pairs.numbers[worst]]]
+    own_flanks = flanks_of(worst_design, design, flanks)
     check = _check(
-        pose_surface, result, worst, [_direct(design, flanks, posed_contact) for posed_contact in contacts]
+        pose_surface,
+        result,
+        worst,
+        [_direct(design, own_flanks, posed_contact) for posed_contact in contacts],
     )
     margins = [
         pattern_margins(posed_contact.pressure, design_at_pose, at)

@@ -10,10 +10,10 @@ import pandas as pd
 from facegear.arrays import Array, Arrays
 from facegear.build.lumped_model import stiffness_phases
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.strength import duty_bins, rating_request
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ContactSetup, ToothPair, contact_setup, pair
-from facegear.contact.gear_flank import GearFlank, from_arrays
+from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of
 from facegear.errors import ConfigError, FacegearError
 from facegear.machine.flanks import flank_places
 from facegear.machine.static_gears import at_rest
@@ -40,6 +40,7 @@ from facegear.strength.rating_tables import (
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
 from facegear.teeth.analysis import section_contact_ratio
+from facegear.teeth.placement import distinct_pairs
 from facegear.ties import first_largest_row
 
 
@@ -87,22 +88,26 @@ def root_stress(
     ConfigError
         Where the fillets carry no gauges.
     """
-    flanks: dict[Body, GearFlank] = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
-    roots = {body: passing(body, flank, loads) for body, flank in flanks.items()}
-    errors = _face_errors(contact_setup(tooth_pair, mesh, contact), roots)
+    setup = contact_setup(tooth_pair, mesh, contact)
+    design, bodies = setup.pair.design, (every_flank_from_arrays(pinion), every_flank_from_arrays(face_gear))
+    pairs = list(zip(*bodies, strict=True))
+    of_variants = [flanks_of(variant, design, pairs) for variant in distinct_pairs(design)[0]]
+    flanks: list[dict[Body, GearFlank]] = [dict(zip(BODIES, pair, strict=True)) for pair in of_variants]
+    roots = {body: passing(body, flank, loads) for body, flank in flanks[0].items()}
+    errors = _face_errors(setup, roots)
     content = root_contents(flanks, loads, errors)
     return Outcome(content, _summary(content["by_flank"]))
 
 
 def root_contents(
-    flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
+    flanks: Sequence[Mapping[Body, GearFlank]], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
     """Build the tables and arrays that stage root_stress stores, for all flanks that differ.
 
     Parameters
     ----------
-    flanks : Mapping[Body, GearFlank]
-        Surface, compliance and gauges of both bodies.
+    flanks : Sequence[Mapping[Body, GearFlank]]
+        Surface, compliance and gauges of both bodies, for each variant of the loads.
     loads : Arrays
         Arrays `loads` of stage contact.
     face_errors : Mapping[Body, float]
@@ -116,12 +121,13 @@ def root_contents(
     """
     numbers = loads["flank_variant"]
     variants: list[dict[str, RootStress]] = [
-        {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in flanks.items()}
-        for variant in range(int(numbers.max()) + 1)
+        {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in of_variant.items()}
+        for variant, of_variant in enumerate(flanks[: int(numbers.max()) + 1])
     ]
-    positions: dict[str, Array] = {
-        body: flank.gauges.position for body, flank in flanks.items() if flank.gauges
-    }
+    positions: list[dict[str, Array]] = [
+        {body: flank.gauges.position for body, flank in of_variant.items() if flank.gauges}
+        for of_variant in flanks
+    ]
     return {
         **root_tables(variants[0]),
         "by_flank": root_by_flank(variants, numbers),

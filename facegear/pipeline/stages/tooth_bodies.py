@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.build.plans import mesh_sizes
 from facegear.build.tooth_pair import ToothPair, contact_setup, pair
-from facegear.contact.gear_flank import gear_flank, to_arrays
+from facegear.contact.gear_flank import every_flank_to_arrays, gear_flanks
 from facegear.errors import FacegearError, require_choice
 from facegear.io.cad import write_step, write_stl
 from facegear.number_format import count_noun
@@ -172,10 +172,11 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
 
 
 def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> Outcome:
-    """Compute the condensed compliance of one body's flank by finite elements, with the gauges of its
+    """Compute the condensed compliance of one body's flanks by finite elements, with the gauges of its
     fillets.
 
-    It does not depend on how the flank is loaded. All contact analyses of the pair use it.
+    It does not depend on how a flank is loaded. All contact analyses of the pair use it. Teeth whose coast
+    flank is no mirror image of the drive flank have one compliance for each.
 
     Parameters
     ----------
@@ -191,8 +192,8 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
     Returns
     -------
     Outcome
-        `arrays` (see `to_arrays` of `facegear.contact.gear_flank`): surface points, compliance in m/N
-        between nodes of the flank and of neighbouring teeth, readings of gauges.
+        `arrays` (see `every_flank_to_arrays` of `facegear.contact.gear_flank`): surface points, compliance
+        in m/N between nodes of the flank and of neighbouring teeth, readings of gauges.
 
     Raises
     ------
@@ -200,7 +201,8 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
         For a sector with more teeth than the gear, and for a mesh turned inside out.
     """
     setup = contact_setup(tooth_pair, mesh, contact)
-    flank = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+    flanks = gear_flanks(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+    flank = flanks[0]
     teeth = count_noun(len(flank.compliance.neighbour_blocks), "tooth", "teeth")
     summary = f"{count_noun(len(flank.compliance.loaded_tooth), 'flank node')}, {teeth} coupled"
-    return Outcome({"arrays": to_arrays(flank)}, summary)
+    return Outcome({"arrays": every_flank_to_arrays(flanks)}, summary)

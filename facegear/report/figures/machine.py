@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.build.machine_layout import ToothNumbers
 from facegear.build.machine_layout import layout as layout_of
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.layout import Layout, Role, Side
 from facegear.number_format import format_number
 from facegear.report.figures.campbell import CLASS_COLOURS

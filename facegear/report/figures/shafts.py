@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.number_format import format_number
 from facegear.report.figures.colours import ORANGE, WHITE, grey
 from facegear.report.figures.description import Axis, Figure, Key, Panel
@@ -50,8 +50,7 @@ def shafts_figures(
     shaft_sections = {name: section for name, section in sections.items() if section is not None}
     if not shaft_sections:
         return []
-    radius = 1e3 * teeth.pinion_base_radius / np.cos(teeth.pressure_angle)
-    return [shafts_figure(shaft_sections, bearings, deflections, float(radius), width_mm)]
+    return [shafts_figure(shaft_sections, bearings, deflections, 1e3 * teeth.pitch_radius, width_mm)]
 
 
 def shafts_figure(

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.number_format import format_number
 from facegear.report.figures.colours import BLACK, BLUE, GREEN, RED, colour_of, mesh_looks
 from facegear.report.figures.comparison import split_label

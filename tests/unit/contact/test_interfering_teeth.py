@@ -82,7 +82,7 @@ def test_what_fillets_carry_stands_beside_the_line_loads_of_the_flanks(interferi
         lines = {
             int(pressure.tooth[row]): row for row in np.flatnonzero(pressure.position == result.position)
         }
-        rows = line_rows(pressure.lines.to_pinion_tip, model.flanks.pinion)
+        rows = line_rows(pressure.lines, model.flanks.pinion)
         kept = [on_flank(spot, rows[lines[spot.tooth]], model.flanks.pinion) for spot in result.spots]
         on_flanks = sum(spot.force.sum() for spot in kept)
         assert in_fillets > 0.05 * whole

@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.exchange.rexs import LOST_CONTENT, Shaft, Spur, Unit, gear_unit, read_rexs, write_rexs
+from facegear.exchange.rexs import (
+    LOST_CONTENT,
+    CylindricalGear,
+    Shaft,
+    Unit,
+    gear_unit,
+    read_rexs,
+    write_rexs,
+)
 from facegear.exchange.rexs_pinions import known_of_rexs
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
@@ -20,6 +28,7 @@ KNOWN = {
     "cylindrical_gear": {
         "number_of_teeth": "none",
         "normal_module": "mm",
+        "helix_angle_reference_diameter": "deg",
         "face_width": "mm",
         "inner_diameter": "mm",
     },
@@ -36,13 +45,22 @@ ROLES = {
 }
 """Relations and their roles, from the same."""
 SIZES = st.none() | st.floats(min_value=1e-3, max_value=1e12, allow_nan=False)
-SPURS = st.builds(
-    Spur, st.integers(5, 500), st.floats(0.1, 100), width=SIZES, pressure_angle=SIZES, bore=SIZES
+ANGLES = st.tuples(SIZES, SIZES).filter(lambda angles: (angles[0] is None) == (angles[1] is None))
+GEARS = st.builds(
+    lambda teeth, module, width, angles, bore, helix: CylindricalGear(
+        teeth, module, width, *angles, bore, helix
+    ),
+    st.integers(5, 500),
+    st.floats(0.1, 100),
+    SIZES,
+    ANGLES,
+    SIZES,
+    st.none() | st.floats(-45, 45),
 )
 NAMES = st.text(
     st.characters(categories=("L", "N", "Zs"), include_characters="<&\"'"), min_size=1, max_size=9
 )
-SHAFTS = st.builds(Shaft, NAMES, mass=SIZES, radial=SIZES, axial=SIZES, spur=st.none() | SPURS)
+SHAFTS = st.builds(Shaft, NAMES, mass=SIZES, radial=SIZES, axial=SIZES, gear=st.none() | GEARS)
 UNITS = st.builds(Unit, st.lists(SHAFTS, max_size=4).map(tuple), young=SIZES, poisson=SIZES)
 
 
@@ -62,8 +80,8 @@ def test_the_papers_machine_keeps_its_pinions_and_bearings(machine):
     assert found == gear_unit(facegear.load(CONFIG, None).config)
     pinion, gear = found.shafts[0], found.shafts[-1]
     assert (pinion.name, pinion.mass, pinion.radial, pinion.axial) == ("tail idler", 1.199, 6.5e7, 0.0)
-    assert pinion.spur == Spur(teeth=23, module=3.75, width=30, pressure_angle=25, bore=25)
-    assert (gear.name, gear.radial, gear.spur) == ("upper face gear", 8.7e9, None)
+    assert pinion.gear == CylindricalGear(23, 3.75, 30, right_angle=25, left_angle=25, bore=25, helix_angle=0)
+    assert (gear.name, gear.radial, gear.gear) == ("upper face gear", 8.7e9, None)
     assert len(found.shafts) == 7 and found.young == 206e3
 
 
@@ -119,7 +137,6 @@ TWO_SHAFTS = (
     '<component id="2" type="cylindrical_gear"><attribute id="number_of_teeth">25</attribute>'
     '<attribute id="normal_module">4</attribute></component></components></model>'
 )
-HELICAL = "gear 2: helix_angle = 15 deg: must be 0, as only spur pinions are read"
 REPLACED = [
     (">1.5<", ">heavy<", "component 1: mass_of_component = 'heavy': must be a finite number"),
     (">1.5<", ">1e999<", "component 1: mass_of_component = '1e999': must be a finite number"),
@@ -131,7 +148,6 @@ REPLACED = [
     (' role="part"', "", "an element ref (id='2') has no attribute role"),
     ('<ref id="2"', '<ref id="7"', "names component '7', which is absent"),
     ('<component id="2"', '<component id="1"', "component id '1' stands twice: must be unique"),
-    ('"number_of_teeth"', '"helix_angle">15</attribute><attribute id="number_of_teeth"', HELICAL),
     ('"normal_module"', '"normal_module" unit="inch"', "unit of normal_module = 'inch': must be 'mm'"),
     (
         '"normal_module"',
@@ -167,10 +183,39 @@ def test_other_forms_of_rexs_are_named(tmp_path, content, form):
 
 def test_axial_stiffness_is_taken_over_and_a_rigid_bearing_is_noted(tmp_path):
     """A bearing of 1e20 N/m was refused without a word on what is allowed, and axial stiffness was lost."""
-    spur = Spur(teeth=25, module=4.0, width=30.0, pressure_angle=20.0, bore=20.0)
-    unit = Unit((Shaft("one", mass=2.0, radial=1e20, axial=3e8, spur=spur),), None, None)
+    gear = CylindricalGear(25, 4.0, 30.0, right_angle=20.0, left_angle=20.0, bore=20.0)
+    unit = Unit((Shaft("one", mass=2.0, radial=1e20, axial=3e8, gear=gear),), None, None)
     path = write_rexs(tmp_path / "own.rexs", unit, "2026-01-01T00:00:00+00:00", "1.0")
     found = known_of_rexs(path)
     assert found.values["axial_bearing_n_per_m"] == 3e8
     assert found.values["input_bearing_n_per_m"] == 1e12
     assert found.notes == (f"{path}: input_bearing_n_per_m = 1e+20: taken as rigid, 1e+12 N/m",)
+
+
+UNLIKE_FLANKS = (
+    '<model version="1.0"><relations><relation id="1" type="assembly"><ref id="1" role="assembly"/>'
+    '<ref id="2" role="part"/></relation><relation id="2" type="flank"><ref id="2" role="gear"/>'
+    '<ref id="3" role="left"/><ref id="4" role="right"/></relation></relations><components>'
+    '<component id="1" type="shaft" name="s"/><component id="2" type="cylindrical_gear">'
+    '<attribute id="number_of_teeth" unit="none">13</attribute>'
+    '<attribute id="normal_module" unit="mm">1.25</attribute>'
+    '<attribute id="helix_angle_reference_diameter" unit="°">-10.0</attribute></component>'
+    '<component id="3" type="cylindrical_gear_flank">'
+    '<attribute id="normal_pressure_angle" unit="°">20.0</attribute></component>'
+    '<component id="4" type="cylindrical_gear_flank">'
+    '<attribute id="normal_pressure_angle" unit="°">25.0</attribute></component></components></model>'
+)
+"""Helical gear as FVA's example of a three-stage gearbox in REXS 1.0 gives it, but with unlike flanks."""
+
+
+def test_a_helical_gear_with_unlike_flanks_is_read_with_its_hand(tmp_path):
+    """The attribute was looked for under a name that REXS does not have: the gear was read as spur."""
+    path = tmp_path / "helical.rexs"
+    path.write_text(UNLIKE_FLANKS, "utf-8")
+    (shaft,) = read_rexs(path).shafts
+    assert shaft.gear == CylindricalGear(
+        13, 1.25, None, right_angle=25.0, left_angle=20.0, bore=None, helix_angle=-10.0
+    )
+    values = known_of_rexs(path).values
+    assert (values["helix_angle_deg"], values["pressure_angle_deg"]) == (-10.0, 25.0)
+    assert values["coast_pressure_angle_deg"] == 20.0

@@ -14,7 +14,8 @@ from facegear.machine.flank_errors import constant_errors
 from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC
-from facegear.machine.layout import PhaseConvention, Role, Side, mesh_phases
+from facegear.machine.layout import Role, Side
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 
 HALF = np.full(10, 50e-6)
 

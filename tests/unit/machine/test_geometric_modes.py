@@ -10,12 +10,12 @@ import pytest
 from free_machines import natural_modes
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
-from lumped_machines import make_layout, make_machine
+from lumped_machines import make_layout, make_machine, mesh_parts
 from references import against, agrees
 from scipy.linalg import eigh
 
 from facegear.machine.imperfections import perfect
-from facegear.machine.kinematics import GEOMETRIC, mesh_parts
+from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Side, Tilt
 from facegear.machine.linear_model import bearing_matrix, lumped_model, mass_diagonal
 from facegear.machine.loaded_contacts import forces_by_active_sets, loaded_contacts

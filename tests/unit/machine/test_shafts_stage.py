@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 import facegear
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics
 from facegear.pipeline.stages.machine import shafts

@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lumped_machines import PLACES, make_layout, make_machine
+from lumped_machines import PLACES, make_layout, make_machine, mesh_parts
 from references import against, agrees
 
 import facegear
 from facegear.harmonics import Harmonics
 from facegear.machine.flank_errors import slow_errors
 from facegear.machine.imperfections import Runout, perfect
-from facegear.machine.kinematics import GEOMETRIC, mesh_parts
-from facegear.machine.layout import PhaseConvention, Role, Side
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.mesh_phases import PhaseConvention
 from facegear.machine.statics import equilibria, static_equilibrium
 
 WAVY = Harmonics(np.array([0.0, 3e-6, 1e-6]), np.array([0.0, 5e-6, -2e-6]))

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from facegear.build.lumped_model import machine
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
 from facegear.build.plans import settings, sweep_plan
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigErrors
 from facegear.harmonics import Harmonics
 from facegear.schema.base import parse

@@ -10,7 +10,8 @@ from gear_bodies import STEEL
 from facegear.build.config import Config
 from facegear.build.elastic_bodies import body_shape, crosses_rectangle
 from facegear.build.load import load_config
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigErrors
 from facegear.machine.layout import Tilt
 from facegear.parts.body_mesh import body_mesh, reentrant

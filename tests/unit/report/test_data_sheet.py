@@ -1,16 +1,21 @@
 """The gear data sheet states what a drawing states, and the summary for the terminal holds it."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import hypot, pi, tan
 from pathlib import Path
 
 import pytest
 from contact_bodies import pair_design
+from kinds_of_teeth import public_section
 
 import facegear
+from facegear.build.tooth_pair import ToothPair
+from facegear.build.tooth_pair import pair_design as public_pair
 from facegear.report.data_sheet import data_sheet_table, pinion_span, pinion_tooth_thickness
+from facegear.schema.base import parse
 from facegear.teeth.analysis import analyse
 from facegear.teeth.document import pair_record
+from facegear.teeth.flank_numbers import blank_numbers, flank_numbers
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.4e-3])
@@ -68,3 +73,36 @@ def test_the_summary_computes_no_statics_and_holds_them_once_they_are_known():
     gearbox.statics()
     text = gearbox.summary()
     assert "Power in → out" in text and "Power balance" in text and "Gear data" not in text
+
+
+def record_of(name):
+    """Return the parts of a record of the tooth geometry that the sheet of a public design takes."""
+    design = public_pair(parse(ToothPair, public_section(name)))
+    gear = design.face_gear
+    return {
+        "design_si": asdict(design),
+        "blanks": blank_numbers(design),
+        "flanks": flank_numbers(design),
+        "radii_mm": {"gear_inner": 1e3 * gear.inner_radius, "gear_outer": 1e3 * gear.outer_radius},
+        "backlash_um": {"smallest": 100.0},
+    }
+
+
+def test_the_sheet_of_helical_teeth_has_a_row_for_each_flank_that_differs():
+    sheet = data_sheet_table(record_of("P1")).set_index("quantity")
+    assert sheet.loc["Helix angle, right hand", "pinion"] == "15"
+    assert sheet.loc["Normal pressure angle", "pinion"] == "25"
+    assert sheet.loc["Base helix angle, drive flank", "pinion"] == "13.566"
+    assert sheet.loc["Base helix angle, coast flank", "pinion"] == "-13.566"
+    assert sheet.loc["Axial force for 1 N m, outwards, drive flank", "pinion"] == "-5.9159"
+    assert sheet.loc["Axial force for 1 N m, outwards, coast flank", "pinion"] == "5.9159"
+    assert not sheet.index.duplicated().any() and not sheet.isin(["nan", "-0.000", "-0"]).any().any()
+
+
+def test_the_sheet_of_tapered_teeth_has_lengths_at_both_ends_and_the_axial_setting():
+    sheet = data_sheet_table(record_of("P2")).set_index("quantity")
+    inner, middle, outer = map(float, sheet.loc["Tip diameter", "pinion"].split(" / "))
+    assert outer - inner == pytest.approx(2 * 30 * tan(4 * pi / 180), abs=1e-3)
+    assert middle == pytest.approx(2 * (43.125 + 3.75), abs=1e-3)
+    assert sheet.loc["Backlash by axial way", "pinion"] == "65.056"
+    assert sheet.loc["Half angle of the tip surface", "face gear"] == "86"

@@ -6,7 +6,8 @@ import pandas as pd
 from references import against, agrees
 
 from facegear.build.load import load_config
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.io.files import write_part
 from facegear.pipeline.stages.sharing import load_sharing_summary, study_forces
 from facegear.pipeline.table import STAGES

@@ -52,7 +52,7 @@ def test_a_gear_s_flank_meets_its_pinions_and_a_pinion_s_flank_both_gears(duty, 
 def contacts(numbers):
     variants = [{body: root(size) for body in ("pinion", "face_gear")} for size in SIZES]
     place = np.zeros((2, 4, 3, 3))
-    stress = root_arrays(variants, numbers, {"pinion": place, "face_gear": place})
+    stress = root_arrays(variants, numbers, len(variants) * [{"pinion": place, "face_gear": place}])
     rows = [
         (gear, flank, torque, size * torque, 10.0, 50.0 * size, 1.0, 1e-4 * size)
         for (gear, flank), size in PRESSURES.items()

@@ -164,7 +164,7 @@ def test_the_file_for_paraview_holds_points_quadrilaterals_and_stress(tmp_path):
     _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
     both = {"pinion": root, "face_gear": root}
-    points, cells, message = stress_surface(root_arrays([both], ALIKE, dict.fromkeys(both, position)))
+    points, cells, message = stress_surface(root_arrays([both], ALIKE, [dict.fromkeys(both, position)]))
     write_vtu(tmp_path / "stress.vtu", points, cells, message)
     stored = vtu_arrays(tmp_path / "stress.vtu")
     np.testing.assert_array_equal(stored["Points"].reshape(-1, 3), points)
@@ -179,7 +179,7 @@ def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gau
     _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
     both = {"pinion": root, "face_gear": root}
-    arrays = root_arrays([both], ALIKE, {"pinion": position, "face_gear": 2 * position})
+    arrays = root_arrays([both], ALIKE, [{"pinion": position, "face_gear": 2 * position}])
     points, cells, message = stress_surface(arrays)
     assert len(points) == 2 * np.prod(GRID)
     assert len(cells["quad"]) == 2 * 2 * (GRID[1] - 1) * (GRID[2] - 1)

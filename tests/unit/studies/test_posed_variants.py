@@ -5,7 +5,7 @@ import pytest
 
 import facegear
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigErrors
 from facegear.harmonics import Harmonics
 from facegear.machine.poses.surface import PoseSurface

@@ -11,7 +11,7 @@ import facegear
 from facegear.build.config import resolved_values
 from facegear.build.load import load_config
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.door.outputs import machine_of
 from facegear.errors import ConfigError

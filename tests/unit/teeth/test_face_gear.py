@@ -95,7 +95,7 @@ def test_local_pressure_angle_is_the_flank_slope_on_the_pitch_plane(pair):
         expected = design.module * 143 * np.cos(design.pressure_angle) / (2 * radius)
         agrees("cosine of the local pressure angle", np.cos(angle), expected, absolute=1e-14)
         agrees(
-            "local pressure angle, rad", face_gear.local_pressure_angle(design, radius), angle, absolute=1e-12
+            "local pressure angle, rad", face_gear.slope_at_place(design, radius, roll), angle, absolute=1e-12
         )
 
 
@@ -140,8 +140,8 @@ def test_fillet_ends_tangent_to_the_root_plane(pair, rounding):
     np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-15)
     angle, z = face_gear_fillet.fillet_section(design, 0.26, np.pi / 2)
     assert z == pytest.approx(design.gear_root_plane, abs=1e-16)
-    assert np.pi / 143 - angle == pytest.approx(face_gear_fillet.root_half_angle(design), abs=1e-15)
-    assert face_gear_fillet.root_half_angle(design) > 0
+    assert np.pi / 143 - angle == pytest.approx(face_gear_fillet.root_half_angle(design, 0.26), abs=1e-15)
+    assert face_gear_fillet.root_half_angle(design, 0.26) > 0
 
 
 @against(

@@ -11,7 +11,7 @@ from rolled_rack import body_turn, depth_in_pinion
 from facegear.errors import GeometryError
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import AssemblyErrors
-from facegear.teeth.family_contact import PinionPose, contact_line
+from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import check_family, family_limits, root_land
 from facegear.teeth.generated_fillet import gear_fillet
 from facegear.teeth.generated_flank import gear_flank
@@ -22,14 +22,12 @@ from facegear.teeth.unloaded_contact import gear_backlash
 SIDES = (1, -1)
 CASES = pytest.mark.parametrize(("name", "side"), [(name, side) for name in NAMES for side in SIDES])
 MIRROR = np.array([-1.0, 1.0, 1.0])
-FORCE_STEPS = {"offset": 0, "gear_axial": 1, "shaft_angle_error": 2, "outwards": 3}
+FORCE_STEPS = {"offset": 0, "gear_axial": 1, "shaft_angle_error": 2, "pinion_axial": 3}
 
 
-def posed(key, value, pose=ERRORS):
-    """Return a pose with one more error."""
-    if key == "outwards":
-        return replace(pose, outwards=pose.outwards + value)
-    return replace(pose, errors=replace(pose.errors, **{key: getattr(pose.errors, key) + value}))
+def with_error(key, value):
+    """Return the public errors of assembly with one more error."""
+    return replace(ERRORS, **{key: getattr(ERRORS, key) + value})
 
 
 @CASES
@@ -53,8 +51,8 @@ def test_the_coast_flank_is_the_mirrored_drive_flank_of_the_other_hand(name, sid
 def test_contact_in_a_pose_is_the_mirrored_contact_of_the_other_hand(name, side):
     family = public_design(name)
     line = contact_line(family, side, ERRORS)
-    errors = replace(ERRORS.errors, offset=-ERRORS.errors.offset)
-    image = contact_line(family.mirror_image, -side, replace(ERRORS, errors=errors))
+    errors = replace(ERRORS, offset=-ERRORS.offset)
+    image = contact_line(family.mirror_image, -side, errors)
     assert abs(line.transmission_error + image.transmission_error) < 1e-16
     assert abs(line.psi - image.psi) < 1e-12
     assert np.abs(line.foot - MIRROR * image.foot).max() < 1e-12
@@ -80,8 +78,8 @@ def test_an_axial_pitch_outwards_is_a_turn_by_one_tooth(name):
     for side in SIDES:
         helicoid = family.pinion_flanks[side < 0]
         pitch = 2 * pi * helicoid.base_radius * helicoid.cosine / family.pinion_teeth
-        still = contact_line(family, side, replace(ERRORS, outwards=0.0))
-        moved = contact_line(family, side, replace(ERRORS, outwards=pitch / helicoid.sine))
+        still = contact_line(family, side, replace(ERRORS, pinion_axial=0.0))
+        moved = contact_line(family, side, replace(ERRORS, pinion_axial=pitch / helicoid.sine))
         assert abs(moved.transmission_error - still.transmission_error - side * pitch) < 1e-15
         assert np.abs(moved.foot - still.foot).max() < 1e-14
         assert (moved.psi, moved.turn) == pytest.approx((still.psi, still.turn), abs=1e-13)
@@ -92,8 +90,8 @@ def test_an_axial_pitch_outwards_is_a_turn_by_one_tooth(name):
 def test_any_place_outwards_changes_the_error_by_the_base_helix(name, side, outwards):
     family = public_design(name)
     eta = family.pinion_flanks[side < 0].sine
-    still = contact_line(family, side, replace(ERRORS, outwards=0.0))
-    moved = contact_line(family, side, replace(ERRORS, outwards=outwards))
+    still = contact_line(family, side, replace(ERRORS, pinion_axial=0.0))
+    moved = contact_line(family, side, replace(ERRORS, pinion_axial=outwards))
     change = moved.transmission_error - still.transmission_error
     assert abs(change - side * eta * outwards) < 1e-15
     assert abs(moved.pinion_place + outwards - still.pinion_place) < 1e-12
@@ -103,13 +101,14 @@ def test_any_place_outwards_changes_the_error_by_the_base_helix(name, side, outw
 def test_virtual_work_of_the_wrench_is_the_slope_of_the_error(name, side):
     family = public_design(name)
     line, step = contact_line(family, side, ERRORS), 1e-6
-    pivot = np.array(line.posed_frame[1]) - ERRORS.outwards * line.posed_frame[0].basis[1]
+    pivot = np.array(line.posed_frame[1]) - ERRORS.pinion_axial * line.posed_frame[0].basis[1]
     wrench = line.frame(0.02).wrench(pivot)
     axis = line.posed_frame[0].basis[1]
     work = side * np.array([wrench[0], wrench[2], wrench[3], wrench[:3] @ axis])
     for key, row in FORCE_STEPS.items():
         at = [
-            contact_line(family, side, posed(key, part * step)).transmission_error for part in (-2, -1, 1, 2)
+            contact_line(family, side, with_error(key, part * step)).transmission_error
+            for part in (-2, -1, 1, 2)
         ]
         slope = (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * step)
         assert abs(slope - work[row]) < 3e-9
@@ -121,7 +120,9 @@ def test_slopes_of_the_contacts_place_are_its_differences(name, side):
     family = public_design(name)
     slopes, step = contact_line(family, side, ERRORS).error_slopes()[1], 1e-6
     for key, row in FORCE_STEPS.items():
-        at = [contact_line(family, side, posed(key, part * step)).pinion_place for part in (-2, -1, 1, 2)]
+        at = [
+            contact_line(family, side, with_error(key, part * step)).pinion_place for part in (-2, -1, 1, 2)
+        ]
         difference = (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * step)
         assert abs(difference - slopes[row]) < 1e-8 * max(1.0, abs(slopes[row]))
 
@@ -165,8 +166,8 @@ def test_axial_forces_add_for_inputs_and_the_helix_cancels_for_idlers(name, driv
 def test_the_axial_force_is_the_same_in_every_pose(name, side):
     family = public_design(name)
     rack = family.rack
-    for pose in (PinionPose(), ERRORS):
-        line = contact_line(family, side, pose)
+    for errors in (AssemblyErrors(), ERRORS):
+        line = contact_line(family, side, errors)
         force = -float(line.normal @ line.posed_frame[0].basis[1]) / line.base_pitch
         helix = side * tan(rack.helix_angle) * cos(rack.taper_angle)
         taper = tan(rack.pressure_angle(side)) * sin(rack.taper_angle) / cos(rack.helix_angle)
@@ -207,12 +208,12 @@ def test_backlash_has_its_closed_form(name):
     thinning = family.thinning / 2 * sum(1 / cos(angle) for angle in angles) / cos(rack.helix_angle)
     taper = sin(rack.taper_angle) * sum(tan(angle) for angle in angles) / cos(rack.helix_angle)
     assert gear_backlash(family) == pytest.approx(thinning, rel=1e-11)
-    outwards = gear_backlash(family, PinionPose(outwards=w)) - gear_backlash(family)
+    outwards = gear_backlash(family, AssemblyErrors(pinion_axial=w)) - gear_backlash(family)
     assert outwards == pytest.approx(w * taper, rel=1e-10, abs=1e-15)
     apart = 1e-8
     normals = [contact_line(family, side).normal for side in SIDES]
     first = -apart * sum(normal[2] / abs(normal[0]) for normal in normals)
-    change = gear_backlash(family, PinionPose(AssemblyErrors(gear_axial=apart))) - gear_backlash(family)
+    change = gear_backlash(family, AssemblyErrors(gear_axial=apart)) - gear_backlash(family)
     assert change == pytest.approx(first, rel=1e-3)
 
 
@@ -278,7 +279,7 @@ def test_thinning_moves_the_helicoid_by_its_normal_share():
 def test_the_error_is_a_curved_function_of_the_gear_axial(name):
     family, step = public_design(name), 5e-6
     at = [
-        contact_line(family, 1, PinionPose(AssemblyErrors(gear_axial=k * step))).transmission_error
+        contact_line(family, 1, AssemblyErrors(gear_axial=k * step)).transmission_error
         for k in (-2, -1, 1, 2)
     ]
     third = (at[3] - 2 * at[2] + 2 * at[1] - at[0]) / (2 * step**3)

@@ -27,7 +27,7 @@ def test_nominal_points_lie_on_the_flanks_with_normals_across_them():
             arm = points[:, 0] * normals[:, 2] - points[:, 2] * normals[:, 0]
             agrees("arm of a normal, m", side * arm, design.pinion_base_radius, absolute=1e-12)
             roll = 1e-3 * rows["profile_mm"].to_numpy() / design.pinion_base_radius
-            radius, _ = pinion.involute_point(design, roll)
+            radius, _ = pinion.involute_point(design, roll, design.middle)
             agrees("radius, m", np.hypot(points[:, 0], points[:, 2]), radius, absolute=1e-12)
         else:
             agrees(

@@ -10,8 +10,8 @@ from scipy.optimize import minimize_scalar
 
 from facegear.contact.hertz import contact_ellipse, contact_modulus
 from facegear.teeth.bounded_contact import contact_path, modified_contact
-from facegear.teeth.design import Material
-from facegear.teeth.family_contact import PinionPose, contact_line
+from facegear.teeth.design import AssemblyErrors, Material
+from facegear.teeth.family_contact import contact_line
 from facegear.teeth.unloaded_contact import gear_backlash
 
 SIDES = {"drive": 1, "coast": -1}
@@ -108,7 +108,7 @@ def test_backlash_and_its_change_with_the_axial_place_are_the_public_ones(name):
     family, numbers = public_design(name), public_numbers(name)
     backlash = gear_backlash(family)
     assert abs(backlash * 1e6 - numbers["backlash at gear pitch circle um"]) < 1e-9
-    change = gear_backlash(family, PinionPose(outwards=1 * MM)) - backlash
+    change = gear_backlash(family, AssemblyErrors(pinion_axial=1 * MM)) - backlash
     assert abs(change * 1e6 - numbers["its change by 1 mm outwards um"]) < 1e-9
 
 
@@ -124,13 +124,13 @@ def test_the_contact_ellipse_is_the_public_one(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize(("pose", "words"), [(None, "nominal"), (ERRORS, "with errors")])
-def test_the_crowned_pinions_transmission_error_is_the_public_one(name, pose, words):
+@pytest.mark.parametrize(("errors", "words"), [(AssemblyErrors(), "nominal"), (ERRORS, "with errors")])
+def test_the_crowned_pinions_transmission_error_is_the_public_one(name, errors, words):
     family = public_design(name)
     removal, pitch = crowning(family, CROWNING_UM[name]), 2 * np.pi / family.pinion_teeth
 
     def contact(angle):
-        return modified_contact(family, 1, angle, removal, pose)
+        return modified_contact(family, 1, angle, removal, errors)
 
     angle = np.linspace(0.0, pitch, 25)
     error = contact(angle).transmission_error

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from random_families import SEED, random_family, random_pose, with_possible_face
+from random_families import SEED, random_errors, random_family, with_possible_face
 from rolled_rack import body_turn, outside_flank
 
 from facegear.errors import GeometryError
@@ -32,7 +32,7 @@ def designs():
     solved, refused = [], []
     for _ in range(DESIGNS):
         family = random_family(rng)
-        pose = random_pose(rng, family.rack.normal_module)
+        pose = random_errors(rng, family.rack.normal_module)
         try:
             solved.append((*solve(family, pose), pose))
         except GeometryError as error:

@@ -128,7 +128,7 @@ def test_smallest_separation_in_a_section_follows_the_closed_form(pair, teeth, p
     phi1 = position * 2 * np.pi / 23
     phi2 = conjugate_angle(design, phi1)
     for y in np.linspace(0.251, 0.2745, 10):
-        low, high = pinion.junction_roll(design), design.pinion_tip_roll
+        low, high = float(pinion.junction_roll(design, design.middle)), design.pinion_tip_roll
         for _ in range(8):
             roll = np.linspace(low, high, 41)
             gap = separation(design, flank_points(design, roll, y), phi1, phi2).gap[0]
@@ -307,7 +307,7 @@ def test_no_gear_beyond_its_ends(pair):
     design = pair(26)
     points = flank_points(design, 0.4, [0.2485, 0.2765])
     assert np.all(np.isinf(separation(design, points, 0.0, 0.0).gap))
-    assert pinion.junction_roll(design) < 0.4
+    assert pinion.junction_roll(design, design.middle) < 0.4
 
 
 def test_a_ray_meets_the_gear_alike_alone_and_beside_others(pair):
@@ -341,7 +341,11 @@ def test_every_ray_ends_on_the_part_it_names(pair, rounding, inner, outer):
     assert (sharpest_fillet_radius(design) < outer) == (outer > 0.28)
     rng = np.random.default_rng(3)
     y = rng.uniform(inner - 1e-3, outer + 1e-3, 200)
-    flank = flank_points(design, rng.uniform(pinion.junction_roll(design), design.pinion_tip_roll, 200), y)
+    flank = flank_points(
+        design,
+        rng.uniform(float(pinion.junction_roll(design, design.middle)), design.pinion_tip_roll, 200),
+        y,
+    )
     fillet = fillet_points(design, rng.uniform(design.pressure_angle, 1.5, 200), y)
     x = np.linspace(-2e-3, 2e-3, 41)
     tip = np.stack([x, np.full(41, inner + 0.01), np.full(41, -design.pinion_tip_radius)], axis=1)

@@ -12,7 +12,7 @@ import pytest
 from spur_values import ERRORS, STORED, shipped_designs, spur_values
 
 from facegear.teeth.bounded_contact import contact_path
-from facegear.teeth.family_contact import PinionPose, contact_line
+from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import family_limits, tip_land
 from facegear.teeth.generated_fillet import gear_fillet
 from facegear.teeth.generated_flank import gear_flank
@@ -113,7 +113,7 @@ CONTACT_LINES = [
 @pytest.mark.parametrize(("name", "case"), CONTACT_LINES)
 def test_the_familys_contact_line_is_the_spur_one(name, case):
     design, stored = design_of(name), stored_values(name)
-    line = contact_line(design.family, 1, PinionPose(ERRORS[case]))
+    line = contact_line(design.family, 1, ERRORS[case])
     psi, turn, error, y, _ = stored[f"path {case}"]
     assert abs(line.psi - psi) < 1e-11
     assert abs(line.turn + turn) < 1e-11
@@ -137,7 +137,7 @@ def family_measures(family):
         numbers += [*fillet.point(fillet.y_at(mean, 0.5), 0.5), fillet.y_at(mean, 1.0)]
         y = family.middle + 0.3 * family.width
         numbers += [*pinion_fillet(family, side).point(1.1, y), float(pinion_start(family, side, y))]
-        line = contact_line(family, side, PinionPose(ERRORS[2], 1e-4))
+        line = contact_line(family, side, replace(ERRORS[2], pinion_axial=1e-4))
         path = contact_path(family, line)
         numbers += [line.psi, line.turn, line.transmission_error, line.pinion_place]
         numbers += [path.first, path.last, *line.curvatures(path.middle)[:2], float(line.sliding(path.last))]

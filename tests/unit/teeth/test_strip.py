@@ -5,7 +5,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.teeth.section_mesh import coarsening_levels, depth_rows
+from facegear.teeth.section_topology import coarsening_levels, depth_rows
 
 
 @given(st.floats(0.01, 0.75), st.floats(0.01, 2.0), st.floats(0.3, 3.0), st.none() | st.floats(0.1, 0.5))

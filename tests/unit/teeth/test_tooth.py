@@ -19,7 +19,7 @@ from facegear.teeth.tooth_mesh import CORNERS, gear_tooth, pinion_tooth
 def surface_points(design, body, name, grid):
     if body == "pinion":
         section = pinion.involute_point if name == "flank" else pinion.trochoid_point
-        return pinion.cartesian(*section(design, grid.u), grid.v)
+        return pinion.cartesian(*section(design, grid.u, grid.v), grid.v)
     if name == "flank":
         return face_gear.flank_point(design, grid.u, grid.v)
     return face_gear.cylindrical(grid.v, *face_gear_fillet.fillet_section(design, grid.v, grid.u))
@@ -173,8 +173,8 @@ def test_tip_chamfer_is_part_of_the_outline(design):
     assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
     radius = np.linspace(chamfered.pinion_tip_radius - 0.3e-3, chamfered.pinion_tip_radius, 2001)
     roll = np.sqrt((radius / design.pinion_base_radius) ** 2 - 1)
-    involute = pinion.involute_point(design, roll)[1]
-    chamfer = np.linspace(involute[0], pinion.tip_half_angle(chamfered), 2001)
+    involute = pinion.involute_point(design, roll, design.middle)[1]
+    chamfer = np.linspace(involute[0], pinion.tip_half_angle(chamfered, chamfered.middle), 2001)
     expected = 2 * np.trapezoid((involute - chamfer) * radius, radius) * design.pinion.width
     removed = volume(plain.nodes, plain.hexes) - volume(mesh.nodes, mesh.hexes)
     agrees("volume that the chamfer takes away, m3", removed, expected, relative=1e-2)

@@ -1,6 +1,9 @@
 // Rays from the pinion cut with the face gear's tooth.
 #include "bindings/parts.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "flanks/placed.hpp"
 #include "flanks/rays.hpp"
 
@@ -12,25 +15,61 @@ namespace {
 using namespace bindings;
 using namespace flanks;
 
+template <std::size_t Size>
+std::array<double, Size> numbers_of(const Record& given, const char* field) {
+    const auto numbers = given.array<double, 1>(field);
+    require(numbers.size() == Size,
+            "polynomials and tables of guesses must have as many numbers as they need");
+    std::array<double, Size> result;
+    std::copy_n(numbers.data(), Size, result.begin());
+    return result;
+}
+
+Side side_of(const Record& given) {
+    const Record shaper = given.record("shaper"), guess = given.record("guess");
+    return {
+        {
+            .base = shaper.number("base"),
+            .ratio = shaper.number("ratio"),
+            .phase = shaper.number("phase"),
+            .sine = shaper.number("sine"),
+            .middle = shaper.number("middle"),
+            .lift = shaper.number("lift"),
+            .offset = shaper.number("offset"),
+            .shaft_sine = shaper.number("shaft_sine"),
+            .shaft_cosine = shaper.number("shaft_cosine"),
+            .taper = shaper.number("taper"),
+            .tip_centre = shaper.number("tip_centre"),
+            .tip_rounding = shaper.number("tip_rounding"),
+        },
+        {
+            .radius = guess.number("radius"),
+            .depth = guess.number("depth"),
+            .roll = numbers_of<6>(guess, "roll"),
+            .psi = numbers_of<6>(guess, "psi"),
+            .edge = numbers_of<3>(guess, "edge"),
+            .edge_error = guess.number("edge_error"),
+            .fillet = numbers_of<FILLET_HEIGHTS>(guess, "fillet"),
+        },
+    };
+}
+
+Line line_of(const Record& given) { return {given.number("height"), given.number("slope")}; }
+
 Blank blank_of(const Record& given) {
     return {
-        .base = given.number("base"),
-        .ratio = given.number("ratio"),
-        .space = given.number("space"),
-        .lift = given.number("lift"),
-        .tip_centre = given.number("tip_centre"),
-        .tip_rounding = given.number("tip_rounding"),
-        .tip_roll = given.number("tip_roll"),
-        .edge_start = given.number("edge_start"),
+        .flank = side_of(given.record("flank")),
+        .back = side_of(given.record("back")),
         .inner = given.number("inner"),
         .outer = given.number("outer"),
-        .tip_plane = given.number("tip_plane"),
-        .root_plane = given.number("root_plane"),
-        .root_start = given.number("root_start"),
+        .tip = line_of(given.record("tip")),
+        .root = line_of(given.record("root")),
+        .root_bulge = given.number("root_bulge"),
         .pitch = given.number("pitch"),
+        .module = given.number("module"),
+        .middle = line_of(given.record("middle")),
         .aside = given.number("aside"),
         .fillet_top = given.number("fillet_top"),
-        .fillet_start = given.number("fillet_start"),
     };
 }
 

@@ -48,9 +48,11 @@ inline void require_within(List<const Index> values, Index low, Index high, cons
 // Fields of a NamedTuple, or of any object that has them.
 class Record {
   public:
-    explicit Record(nb::handle object) : object(object) {}
+    explicit Record(nb::handle object) : object(nb::borrow(object)) {}
 
     double number(const char* field) const { return get<double>(field, "a number"); }
+
+    Record record(const char* field) const { return Record(object.attr(field)); }
 
     template <class Value, int Dimensions>
     Given<Value, Dimensions> array(const char* field) const {
@@ -63,7 +65,7 @@ class Record {
     }
 
   private:
-    nb::handle object;
+    nb::object object;
 
     template <class Type>
     Type get(const char* field, const char* wanted, bool convert = true) const {

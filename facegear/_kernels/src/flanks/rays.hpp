@@ -16,15 +16,18 @@ namespace facegear::flanks {
 inline std::vector<Index> rays_near_the_tooth(const Blank& blank, const Rays& rays) {
     std::vector<Index> live;
     live.reserve(static_cast<std::size_t>(rays.count()));
-    const double beside = std::max(rays.search_radius, blank.aside / 3);
+    const double beside = std::max(rays.search_radius, blank.module);
     const double low = std::max(blank.inner - beside, 0.0), high = blank.outer + beside;
+    const double steepest = std::max(std::fabs(blank.tip.slope), std::fabs(blank.root.slope));
     for (Index i = 0; i < rays.count(); ++i) {
         const auto [start, way] = rays[i];
-        const double rise = rays.search_radius * std::fabs(way.z),
-                     square = start.x * start.x + start.y * start.y;
-        const bool is_high = start.z - rise < blank.tip_plane + ON_PLANE && start.z + rise > blank.root_plane;
-        const bool is_between = low * low < square && square < high * high;
-        if (is_high && is_between && std::fabs(start.x) < blank.aside) live.push_back(i);
+        const double square = start.x * start.x + start.y * start.y;
+        if (!(low * low < square && square < high * high)) continue;
+        if (!(std::fabs(start.x - blank.middle.at(start.y)) < blank.aside)) continue;
+        const double rise = rays.search_radius * (std::fabs(way.z) + steepest), radius = std::sqrt(square);
+        if (start.z - rise < blank.tip.at(radius) + ON_TIP &&
+            start.z + rise > blank.root.at(radius) - blank.root_bulge)
+            live.push_back(i);
     }
     return live;
 }
@@ -86,29 +89,50 @@ struct SingleRay {
     }
 
     void meet_the_rest() {
-        if (!is_hit() && ray.start.z - search_radius * std::fabs(ray.way.z) < blank.fillet_top) {
+        const double reach = search_radius * (std::fabs(ray.way.z) + std::fabs(blank.tip.slope));
+        const double radius = radius_of(ray.start);
+        if (!is_hit() && ray.start.z - reach < blank.tip.at(radius) + blank.fillet_top) {
             hit = cut_fillet(blank, ray, search_radius);
-            lost += std::isnan(hit.distance);
             part = FILLET;
         }
         if (!is_hit()) meet_tip_land();
-        if (!is_hit()) meet_root_land();
+        if (!is_hit()) meet_root_land(radius);
     }
 
   private:
     void meet_tip_land() {
-        hit = cut_land(blank, ray, blank.tip_plane, search_radius);
+        hit = cut_land(blank, ray, search_radius,
+                       [&](double radius) { return Rise{blank.tip.at(radius), blank.tip.slope}; });
         part = TIP_LAND;
         if (!is_hit()) return;
-        const double edge = tip_edge_angle(blank, hit.radius);
-        lost += std::isnan(edge);
-        if (!(std::fabs(hit.u) <= edge)) hit.distance = MISSED;
+        const double from_middle =
+            2 * hit.u - blank.flank.guess.edge_at(hit.radius) + blank.back.guess.edge_at(hit.radius);
+        if (!(from_middle > 0 ? is_within_edge(blank.flank, hit.u) : is_within_edge(blank.back, -hit.u)))
+            hit.distance = MISSED;
     }
 
-    void meet_root_land() {
-        hit = cut_land(blank, ray, blank.root_plane, search_radius);
+    // Whether a place of the tip land is within the edge of a side.
+    bool is_within_edge(const Side& side, double angle) {
+        const double guess = side.guess.edge_at(hit.radius);
+        if (std::fabs(angle - guess) > side.guess.edge_error) return angle < guess;
+        const double edge = tip_edge_angle(side, blank.tip, hit.radius);
+        lost += std::isnan(edge);
+        return angle <= edge;
+    }
+
+    void meet_root_land(double start_radius) {
+        const double reach = search_radius * (std::fabs(ray.way.z) + std::fabs(blank.root.slope));
+        hit.distance = MISSED;
+        if (!(ray.start.z - reach < blank.root.at(start_radius) + blank.root_bulge)) return;
+        hit = cut_land(blank, ray, search_radius, [&](double radius) {
+            const RootEdge edge = root_edge(blank.flank, radius);
+            return Rise{edge.height, edge.slope};
+        });
         part = ROOT_LAND;
-        if (!(blank.root_start <= hit.u && hit.u <= blank.pitch - blank.root_start)) hit.distance = MISSED;
+        if (!is_hit()) return;
+        const double first = root_edge(blank.flank, hit.radius).angle,
+                     last = blank.pitch - root_edge(blank.back, hit.radius).angle;
+        if (!(first <= hit.u && hit.u <= last)) hit.distance = MISSED;
     }
 };
 

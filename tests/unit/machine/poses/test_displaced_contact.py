@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 import facegear
-from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.machine_layout import layout
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import pair_design
 from facegear.errors import FacegearError, NotConverged
 from facegear.machine.linear_model import lumped_model

@@ -8,7 +8,7 @@ from oscillators import one_degree
 
 import facegear
 from facegear.build.machine import MachineInputs
-from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.motion.branches.continuation import ContinuationSettings
 from facegear.motion.branches.explore import explore, lies_on
 from facegear.motion.branches.family import Family, speed_family

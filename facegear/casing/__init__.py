@@ -1,0 +1,1 @@
+"""Casings: matrices of finite-element programs, reduced to the seats, feet and sensors of a machine."""

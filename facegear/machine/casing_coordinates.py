@@ -1,0 +1,161 @@
+"""Coordinates of a casing among those of a machine: where they stand, and which unknowns statics has."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array, Integers
+from facegear.machine.linear_model import LinearModel, Spin, massive_motions
+
+CASING = "casing"
+"""Body of the casing's coordinates in labels: `casing:upper gear x`."""
+CASING_MODE = 0.5
+"""Part of the kinetic energy in the casing from which a mode is one of the casing: a free choice."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeatMotion:
+    """Change from motions of bodies to their motions against their seats, v = q - H u.
+
+    Attributes
+    ----------
+    motion : (b, c)
+        H: motions of the first b coordinates by the c of the casing.
+    at : slice
+        Coordinates of the casing among all of the model.
+    stiffness : (c, c)
+        Of the casing and of shafts between its seats, SI units.
+    modes : (k,)
+        Coordinates of the model that are modes of the casing.
+    """
+
+    motion: Array
+    at: slice
+    stiffness: Array
+    modes: Integers
+
+    def absolute(self, displacements: Array) -> Array:
+        """Return the motions of bodies from those against their seats.
+
+        Parameters
+        ----------
+        displacements : (K, n) array
+            Unknowns v and all other coordinates, m and rad.
+
+        Returns
+        -------
+        (K, n) array
+            q and all other coordinates.
+        """
+        absolute = displacements.copy()
+        absolute[:, : len(self.motion)] += displacements[:, self.at] @ self.motion.T
+        return absolute
+
+    def along_relative(self, rows: Array) -> Array:
+        """Return loads or flank rows by the unknowns v and u from those by q and u.
+
+        Parameters
+        ----------
+        rows : (..., n) array
+            Any unit.
+
+        Returns
+        -------
+        (..., n) array
+            In the same unit.
+        """
+        relative = rows.copy()
+        relative[..., self.at] += rows[..., : len(self.motion)] @ self.motion
+        return relative
+
+    def relative_stiffness(self, stiffness: Array) -> Array:
+        """Return the stiffness by v and u, in which no bearing joins a body with its seat.
+
+        Parameters
+        ----------
+        stiffness : (n, n) array
+            By q and u, SI units.
+
+        Returns
+        -------
+        (n, n) array
+            SI units.
+        """
+        relative = stiffness.copy()
+        bodies = slice(0, len(self.motion))
+        relative[bodies, self.at] = relative[self.at, bodies] = 0.0
+        relative[self.at, self.at] = self.stiffness
+        return relative
+
+
+def casing_motion(linear: LinearModel, displacements: AnyArray) -> AnyArray:
+    """Return the motions of the casing among the displacements of a machine on it.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    displacements : (..., n) array
+        Displacements of all coordinates, real or complex, m and rad.
+
+    Returns
+    -------
+    (..., c) array
+        Motions of seats, feet and modes, m and rad.
+    """
+    return displacements[..., np.array([label.startswith(f"{CASING}:") for label in linear.labels])]
+
+
+def casing_start(linear: LinearModel) -> int:
+    """Return the index of the first coordinate of the casing.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of a machine on a casing.
+
+    Returns
+    -------
+    int
+        Index among all coordinates.
+    """
+    return next(n for n, label in enumerate(linear.labels) if label.startswith(f"{CASING}:"))
+
+
+def condense_massless(model: LinearModel) -> LinearModel:
+    """Return a model whose motions without mass are no coordinates any more.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Linear model with a casing.
+
+    Returns
+    -------
+    LinearModel
+        Coordinates of bodies stay, those of the casing become independent motions with mass; the same model
+        where every motion has mass.
+    """
+    motions = massive_motions(model)
+    if motions is None:
+        return model
+    bodies = sum(not label.startswith(f"{CASING}:") for label in model.labels)
+    spin = model.spin
+    if spin is not None:
+        parts = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
+        spin = Spin(*(motions.T @ part @ motions for part in parts))
+    labels = [f"{CASING}:motion {number}" for number in range(1, motions.shape[1] - bodies + 1)]
+    assert model.seat_tilts is not None
+    return replace(
+        model,
+        labels=(*model.labels[:bodies], *labels),
+        mass=motions.T @ model.mass @ motions,
+        stiffness=motions.T @ model.stiffness @ motions,
+        rows=model.rows @ motions,
+        torques=model.torques @ motions,
+        forces=model.forces @ motions,
+        lengths=np.abs(model.lengths[:, None] * motions).max(axis=0),
+        dampers=motions.T @ model.dampers @ motions,
+        spin=spin,
+        seat_tilts=model.seat_tilts @ motions,
+    )

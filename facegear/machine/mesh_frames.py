@@ -1,0 +1,251 @@
+"""Where the flanks of a mesh press: one line for each flank of either gear, as pinion and gear feel it.
+
+Unmodified flanks of every kind touch on one line, their common normal (`facegear.teeth.family_contact`), so
+that a mesh acts on its bodies by one constant wrench for each flank: a force along that normal n and its
+moment about a body's centre, the same from every point of the line. Loads may wander along the line without
+any effect on a body.
+
+Axes. A pinion has x along the tangent, as the upper gear's teeth move, z outwards along its own axis, and y
+square to both; where the axes cross at right angles, y is the gears' axis, from the lower to the upper gear.
+At a mesh a gear has the tangent, its axis from the lower to the upper gear, and outwards, in this order.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, pi
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.teeth.family_contact import contact_line
+from facegear.teeth.tooth_family import SIDES, Rack, RelativeMotion, ToothFamily
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class FlankFrame:
+    """Line of contact of one flank of a mesh.
+
+    Attributes
+    ----------
+    normal
+        Unit normal from pinion to gear along the pinion's x, y, z.
+    moment
+        Moment of that normal about the middle of the pinion's face, along the same axes, m.
+    gear_normal
+        The same normal along tangent, gear axis and outwards.
+    gear_point
+        A point of the line along these axes, m: from the gear's axis, and over the pitch plane.
+    arm
+        Torque on the pinion over the force along the normal, over that of the drive flank: 1 for the drive
+        flank, negative for the back flank, as it turns the pinion back.
+    """
+
+    normal: Vector
+    moment: Vector
+    gear_normal: Vector
+    gear_point: Vector
+    arm: float
+
+    @property
+    def turn_by_place(self) -> float:
+        """Way along the drive flank's line of action by a turn of the pinion that does to this flank what a
+        motion of the pinion outwards does, m/m.
+        """
+        return self.normal[2] / self.arm
+
+    def gear_moment(self, centre: float) -> Vector:
+        """Return the moment of the normal about a point of the gear's axis.
+
+        Parameters
+        ----------
+        centre : float
+            Height of the point over the pitch plane of the meshes, along the gears' axis, m.
+
+        Returns
+        -------
+        tuple of float
+            About tangent, gear axis and the direction outwards, m.
+        """
+        (across, height, outwards), (n_across, n_height, n_outwards) = self.gear_point, self.gear_normal
+        height -= centre
+        return (
+            height * n_outwards - outwards * n_height,
+            outwards * n_across - across * n_outwards,
+            across * n_height - height * n_across,
+        )
+
+
+@dataclass(frozen=True)
+class ToothKind:
+    """Teeth that are not spur teeth at right angles, as rows of a machine need to know them.
+
+    Attributes
+    ----------
+    pinion_teeth, gear_teeth
+        Numbers of teeth.
+    rack
+        Module, pressure angles of both flanks, helix and taper.
+    shaft_angle, offset
+        Of the pinion's axis against the upper gear's, rad and m, as `tooth_family` counts them.
+    middle
+        Place of the middle of the pinion's face along its axis, m; None: where its pitch radius and that of
+        the upper gear roll on each other.
+    """
+
+    pinion_teeth: int
+    gear_teeth: int
+    rack: Rack
+    shaft_angle: float = pi / 2
+    offset: float = 0.0
+    middle: float | None = None
+
+    @cached_property
+    def family(self) -> ToothFamily:
+        """The upper gear's teeth, with the size of every land and face left 0, as no line of contact needs
+        them; nor does it depend on the shaper, which is the pinion itself.
+        """
+        return ToothFamily(
+            rack=self.rack,
+            pinion_teeth=self.pinion_teeth,
+            gear_teeth=self.gear_teeth,
+            shaper_teeth=self.pinion_teeth,
+            middle=self._rolling_place(1.0) if self.middle is None else self.middle,
+            width=0.0,
+            inner_radius=0.0,
+            outer_radius=0.0,
+            pinion_addendum=0.0,
+            pinion_dedendum=0.0,
+            gear_addendum=0.0,
+            shaper_addendum=0.0,
+            shaft_angle=self.shaft_angle,
+            offset=self.offset,
+        )
+
+    @property
+    def pitch_radius(self) -> float:
+        """Pitch radius of the pinion, m."""
+        return self.pinion_teeth * self.rack.transverse_module / 2
+
+    @property
+    def normal_arms(self) -> tuple[float, float]:
+        """Torque on the pinion over the force of its drive and of its coast flank along the normal, m."""
+        first, second = (cos(angle) * cos(self.rack.helix_angle) for angle in self.rack.pressure_angles)
+        return self.pitch_radius * first, self.pitch_radius * second
+
+    def _rolling_place(self, sign: float) -> float:
+        """Return the place y along the pinion's axis at which its pitch radius and that of the upper (sign 1)
+        or lower (-1) gear roll on each other without offset, m.
+        """
+        motion = self._motion
+        gear_radius = self.gear_teeth * self.rack.transverse_module / 2
+        return (gear_radius + sign * self.pitch_radius * motion.cosine) / motion.sine
+
+    @property
+    def _motion(self) -> RelativeMotion:
+        """Motion of the pinion against the upper gear."""
+        return RelativeMotion(self.pinion_teeth / self.gear_teeth, self.shaft_angle, self.offset)
+
+    @property
+    def lean(self) -> Array:
+        """Rotation (3, 3) from tangent, gear axis and outwards to the pinion's x, y, z."""
+        sine, cosine = self._motion.sine, self._motion.cosine
+        return np.array([[1.0, 0.0, 0.0], [0.0, sine, -cosine], [0.0, cosine, sine]])
+
+    def pitch_height(self, sign: float) -> float:
+        """Return how far the pitch plane of a gear's meshes lies from where the pinions' axes pass the
+        gear's, towards the gear.
+
+        Parameters
+        ----------
+        sign : float
+            1 for the upper, -1 for the lower gear.
+
+        Returns
+        -------
+        float
+            Through the pitch circle that rolls on the pinion's without offset, m.
+        """
+        motion = self._motion
+        return self.pitch_radius * motion.sine + sign * self._rolling_place(sign) * motion.cosine
+
+    def frames(self, sign: float) -> tuple[FlankFrame, FlankFrame]:
+        """Return the lines of contact of the drive and the back flank of a gear's meshes.
+
+        Parameters
+        ----------
+        sign : float
+            1 for the upper, -1 for the lower gear.
+
+        Returns
+        -------
+        pair of FlankFrame
+            Drive and back flank.
+        """
+        drive, back = (self._frame(sign, side) for side in SIDES)
+        return drive, back
+
+    def _frame(self, sign: float, side: int) -> FlankFrame:
+        """Return the line of contact of the drive (side 1) or the back flank (-1) of a gear, from the line in
+        the mesh frame of that gear (sign 1 upper, -1 lower).
+        """
+        family = self.family if sign > 0.0 else self.family.below
+        line = contact_line(family, side)
+        assert line is not None  # without errors of assembly there always is one
+        motion = family.motion
+        axes = motion.basis  # x, a, u of the mesh frame
+        middle = np.array([motion.offset, 0.0, 0.0]) + family.middle * axes[1]
+        to_pinion = np.array([[sign, 0.0, 0.0], [0.0, 0.0, -sign], [0.0, 1.0, 0.0]]) @ axes
+        to_gear = np.array([[sign, 0.0, 0.0], [0.0, 0.0, -sign], [0.0, 1.0, 0.0]])
+        # the point at which the line passes the pinion's pitch line
+        up = axes[2]
+        along = (-self.pitch_radius - up @ line.foot) / (up @ line.normal)
+        point = line.foot + along * line.normal
+        height = np.array([0.0, sign * self.pitch_height(sign), 0.0])
+        arms = self.normal_arms
+        return FlankFrame(
+            normal=_vector(to_pinion @ line.normal),
+            moment=_vector(np.cross(to_pinion @ (point - middle), to_pinion @ line.normal)),
+            gear_normal=_vector(to_gear @ line.normal),
+            gear_point=_vector(to_gear @ point - height),
+            arm=1.0 if side > 0 else -arms[1] / arms[0],
+        )
+
+
+def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple[FlankFrame, FlankFrame]:
+    """Return the lines of contact of spur teeth at right angles: both flanks in the section of the pitch
+    point, in which the middle of the pinion's face is taken to stand, so that no mesh tilts a pinion.
+
+    Parameters
+    ----------
+    sign : float
+        1 for the upper, -1 for the lower gear.
+    pressure_angle : float
+        Pressure angle, rad.
+    mesh_radius : float
+        Distance of the meshes from the gear's axis, m.
+
+    Returns
+    -------
+    pair of FlankFrame
+        Drive and back flank.
+    """
+    cosine, sine = float(np.cos(pressure_angle)), float(np.sin(pressure_angle))
+    drive, back = (
+        FlankFrame(
+            normal=(side * sign * cosine, sign * sine, 0.0),
+            moment=(0.0, 0.0, 0.0),
+            gear_normal=(side * sign * cosine, sign * sine, 0.0),
+            gear_point=(0.0, 0.0, mesh_radius),
+            arm=float(side),
+        )
+        for side in SIDES
+    )
+    return drive, back
+
+
+def _vector(values: Array) -> Vector:
+    """Return three numbers of an array as plain numbers, so that frames can be compared and hashed."""
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,154 @@
+"""Keys of helical, tapered, offset and asymmetric teeth, and the stages that refuse them before any work."""
+
+from dataclasses import asdict
+
+import pytest
+from kinds_of_teeth import public_section
+from public_teeth import NAMES, public_design, public_numbers
+
+import facegear
+from facegear.build.checks import geometric_backlash
+from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, require_moved_kind
+from facegear.build.load import config_of
+from facegear.build.tooth_pair import ToothPair, pair_design
+from facegear.checking import check_config
+from facegear.errors import ConfigError, ConfigErrors
+from facegear.pipeline.stages.teeth import geometry
+from facegear.pipeline.table import STAGES
+from facegear.schema.base import parse
+
+PER_MM = {"P2": 65.055955826}
+"""Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
+NOT_STAGES = {"displaced_contact"}
+"""Name in SPUR_ONLY of an answer from Python that no stage gives."""
+
+
+def make_config(name: str, **changes) -> dict:
+    """Return the plain values of a config of a public design alone."""
+    return {"case": "kind", "tooth_pair": {**public_section(name), **changes}}
+
+
+def flat(values, key=""):
+    """Return the numbers of nested mappings by dotted key."""
+    if not isinstance(values, dict):
+        return {key: values}
+    return {
+        name: value for inner, part in values.items() for name, value in flat(part, f"{key}.{inner}").items()
+    }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_keys_make_the_public_design(name):
+    family = pair_design(parse(ToothPair, public_section(name))).family
+    given, found = flat(asdict(public_design(name))), flat(asdict(family))
+    assert found == {
+        key: pytest.approx(value, rel=1e-14, abs=1e-20)
+        if key != ".rack.pressure_angles"
+        else pytest.approx(value)
+        for key, value in given.items()
+    }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_backlash_as_assembled_is_the_public_one_and_grows_with_the_axial_setting(name):
+    numbers, section = public_numbers(name), public_section(name)
+    design = pair_design(parse(ToothPair, section))
+    nominal, scale = (
+        numbers["backlash at gear pitch circle um"],
+        design.gear_normal_arm / design.family.gear_pitch_radius,
+    )
+    assert geometric_backlash(parse(ToothPair, section)) / scale == pytest.approx(nominal, abs=1e-7)
+    section["assembly"] = {"pinion_axial_um": 1000}
+    grown = geometric_backlash(parse(ToothPair, section)) / scale - nominal
+    assert grown == pytest.approx(PER_MM.get(name, 0.0), abs=1e-7)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_public_designs_mesh_freely_with_their_contact_ratio_and_backlash(name):
+    """Tips of both gears clear the other on all of them; a point beside a tapered tooth counted as inside its
+    tip land, so that P2 jammed by 408 um and P4 interfered by 2 um.
+    """
+    record = geometry(parse(ToothPair, public_section(name))).content["pair"]
+    numbers = public_numbers(name)
+    assert record["interference"] is None and record["smallest_gap"]["gap_um"] > 0.0
+    assert record["contact_ratio"] == pytest.approx(numbers["drive contact ratio"], rel=1e-10)
+    arm = pair_design(parse(ToothPair, public_section(name)))
+    scale = arm.gear_normal_arm / arm.family.gear_pitch_radius
+    backlash = scale * numbers["backlash at gear pitch circle um"]
+    assert record["backlash_um"]["smallest"] == pytest.approx(backlash, abs=1e-7)
+
+
+def test_one_angle_for_both_flanks_is_that_angle():
+    both = public_section("P3") | {"pressure_angle_deg": {"drive": 25, "coast": 25}}
+    one = public_section("P3") | {"pressure_angle_deg": 25}
+    assert pair_design(parse(ToothPair, both)) == pair_design(parse(ToothPair, one))
+
+
+def test_spur_only_names_stages():
+    assert set(SPUR_ONLY) - set(STAGES) == NOT_STAGES
+    assert all(set(keys) <= set(ALL_KINDS) for keys in SPUR_ONLY.values())
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"helix_angle_deg": 5.0}, "tooth_pair.helix_angle_deg = 5.0: must be 0, as stage "),
+        ({"taper_angle_deg": 1.0}, "tooth_pair.taper_angle_deg = 1.0: must be 0, as stage "),
+        ({"shaft_angle_deg": 91.0}, "tooth_pair.shaft_angle_deg = 91.0: must be 90, as stage "),
+        ({"offset_mm": -1.0}, "tooth_pair.offset_mm = -1.0: must be 0, as stage "),
+        (
+            {"assembly": {"pinion_axial_um": 10.0}},
+            "tooth_pair.assembly.pinion_axial_um = 10.0: must be 0, as stage ",
+        ),
+        (
+            {"pressure_angle_deg": {"drive": 25, "coast": 24}},
+            "tooth_pair.pressure_angle_deg = {'drive': 25, 'coast': 24}: must be one number for both flanks",
+        ),
+        ({"middle": 263.0}, "tooth_pair.pinion.middle_mm = 263.0: must be null or 262.5, as stage "),
+    ],
+)
+def test_a_stage_that_takes_spur_teeth_alone_refuses_others_by_key(changes, line):
+    gearbox = facegear.example()
+    pair = {**gearbox.values["tooth_pair"], **{key: changes[key] for key in changes if key != "middle"}}
+    pair["assembly"] = {**gearbox.values["tooth_pair"]["assembly"], **changes.get("assembly", {})}
+    if "middle" in changes:
+        pair["pinion"] = {**pair["pinion"], "middle_mm": changes["middle"]}
+    (error,) = refused_keys(SPUR_ONLY, pair).values()
+    assert str(error).startswith(line)
+    assert not refused_keys(SPUR_ONLY, gearbox.values["tooth_pair"])
+
+
+def test_the_door_refuses_before_any_work():
+    gearbox = facegear.load(make_config("P1"), results=None)
+    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage compliance"):
+        gearbox.contact()
+
+
+def test_the_check_of_a_config_names_the_stages_that_refuse():
+    values = make_config("P1")
+    failures = check_config(config_of(values), values).failures
+    assert [
+        line
+        for line in failures
+        if line.startswith("tooth_pair.helix_angle_deg = 15.0: must be 0, as stage ")
+    ]
+
+
+@pytest.mark.parametrize("moved", ["assembly.pinion_axial_um", "helix_angle_deg", "pressure_angle_deg.coast"])
+def test_a_search_may_not_move_teeth_to_a_kind_that_its_stage_refuses(moved, monkeypatch):
+    monkeypatch.setitem(SPUR_ONLY, "search_island", ALL_KINDS)
+    with pytest.raises(ConfigError) as refused:
+        require_moved_kind("search.variables.sets", [f"tooth_pair.{moved}"], "search_island")
+    assert str(refused.value).startswith(f"search.variables.sets = 'tooth_pair.{moved}': must be another key")
+    require_moved_kind("search.variables.sets", ["tooth_pair.pressure_angle_deg"], "search_island")
+
+
+def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
+    values = facegear.load("config/microgeometry.yaml").config.model_dump(mode="json")
+    cause = values["tolerances"]["causes"][0]
+    values["tolerances"]["causes"] = [{**cause, "moves": {"tooth_pair.assembly.pinion_axial_um": 1}}]
+    monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ALL_KINDS)
+    with pytest.raises(ConfigErrors, match=r"causes\.moves = .*pinion_axial_um.*: must be another key"):
+        config_of(values)
+    monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ())
+    assert config_of(values).tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
