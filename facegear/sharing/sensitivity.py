@@ -13,7 +13,8 @@ from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Kinematics, Layout, Role
-from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.machine import Machine
+from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
 from facegear.ties import size_ranks

@@ -33,7 +33,7 @@ def test_nominal_points_lie_on_the_flanks_with_normals_across_them():
             agrees(
                 "gear radius, mm", 1e3 * np.hypot(points[:, 0], points[:, 1]), rows["face_mm"], absolute=1e-9
             )
-            depth = design.gear_tip_plane - points[:, 2]
+            depth = face_gear.tip_height(design, design.mean_radius) - points[:, 2]
             agrees("depth, mm", 1e3 * depth, rows["profile_mm"], absolute=1e-9)
             places = face_gear.roll_and_psi_at_height(design, 1e-3 * rows["face_mm"], points[:, 2])
             tangents = face_gear.flank_tangents(design, *places)
