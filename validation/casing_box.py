@@ -101,12 +101,12 @@ def write_elements(mesh_path: Path, path: Path) -> tuple[Integers, Array]:
         import meshio
     mesh = meshio.read(mesh_path)
     elements = np.concatenate([block.data for block in mesh.cells if block.type == "hexahedron20"])
-    nodes, numbers = np.unique(elements, return_inverse=True)
-    numbers = numbers.reshape(elements.shape) + 1
+    nodes, order = np.unique(elements, return_inverse=True)
+    rows = np.add(order.reshape(elements.shape), 1)
     lines = ["*NODE, NSET=NALL"]
     lines += [f"{k}, {x:.12g}, {y:.12g}, {z:.12g}" for k, (x, y, z) in enumerate(mesh.points[nodes], start=1)]
     lines.append("*ELEMENT, TYPE=C3D20, ELSET=EALL")
-    for number, element in enumerate(numbers.tolist(), start=1):
+    for number, element in enumerate(rows.tolist(), start=1):
         row = [number, *element]
         lines += [", ".join(map(str, row[:11])) + ",", ", ".join(map(str, row[11:]))]
     path.write_text("\n".join(lines) + "\n")

@@ -231,8 +231,15 @@ class Casing:
         """
         return self.base_motions(len(self.layout.pinions) + gear)[3:]
 
-    def flank_rows(self) -> Array:
-        """Return the derivatives of the flanks' deflections by the casing: gears that tilt with their seats.
+    def flank_rows(self, line: DriveLine | None = None) -> Array:
+        """Return the derivatives of the flanks' deflections by the casing: bodies that tilt with their seats.
+
+        Spur teeth at right angles turn no pinion about a diameter.
+
+        Parameters
+        ----------
+        line : DriveLine or None
+            Drive line, whose shafts let pinions tilt by themselves.
 
         Returns
         -------
@@ -245,6 +252,13 @@ class Casing:
             if g in self.tilting_with_seat:
                 by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
                 rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
+            if (
+                layout.kind is not None
+                and i in self.bearing_seats
+                and (line is None or i not in line.tilting)
+            ):
+                moments = np.array([frame.moment[:2] for frame in layout.flank_frames[g]])
+                rows[:, mesh] += moments @ self.base_motions(i)[3:]
         return rows.reshape(2 * len(layout.meshes), self.size)
 
     def __call__(self, base_model: LinearModel, line: DriveLine | None = None) -> LinearModel:
@@ -282,7 +296,7 @@ class Casing:
             labels=(*base_model.labels, *(f"{CASING}:{letter}" for letter in self.mounted.letters)),
             mass=mass,
             stiffness=0.5 * (stiffness + stiffness.T),
-            rows=np.hstack([base_model.rows, self.flank_rows()]),
+            rows=np.hstack([base_model.rows, self.flank_rows(line)]),
             torques=np.append(base_model.torques, zeros),
             forces=np.append(base_model.forces, zeros),
             lengths=np.append(base_model.lengths, self._lengths()),
@@ -376,11 +390,11 @@ def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple
         around = layout.angles[body] - first
         cosine, sine = np.cos(around), np.sin(around)
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
-        place = layout.pinion_middle if distance is None else distance
+        along = layout.pinion_middle if distance is None else distance
         if layout.kind is None:
-            return axes, place * axes[2]
+            return axes, along * axes[2]
         axes = layout.kind.lean @ axes
-        return axes, layout.kind.offset * axes[0] + place * axes[2]
+        return axes, layout.kind.offset * axes[0] + along * axes[2]
     cosine, sine = np.cos(first), np.sin(first)
     axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions
