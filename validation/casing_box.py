@@ -1,7 +1,7 @@
 """Make the casing of config/casing.yaml: a box meshed by gmsh, matrices by CalculiX, reduced by facegear.
 
 `python -m validation.casing_box FOLDER` needs gmsh and meshio (extra `fe`) and the program `ccx`. It writes
-the mesh, the input of CalculiX, its matrices (`box.sti`, `.mas`, `.dof`), the list of nodes with the patches
+the mesh, the input of CalculiX, its matrices, the list of nodes with the patches
 of seats and feet, and `box.npz`: both matrices reduced to these patches and 30 modes, in mm, t and s.
 """
 
