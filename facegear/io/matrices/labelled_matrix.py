@@ -9,6 +9,7 @@ from scipy import sparse
 
 from facegear.arrays import Array, Integers
 from facegear.errors import plain_reason
+from facegear.number_format import count_noun
 
 DIRECTIONS = 6
 """Directions of a node: motion along x, y, z, then rotation about x, y, z, numbered from 1."""
@@ -39,7 +40,9 @@ class LabelledMatrix:
     def __post_init__(self) -> None:
         if self.matrix.shape != (self.node.size, self.node.size):
             rows, columns = self.matrix.shape
-            raise MatrixFault(f"it has {rows} rows and {columns} columns, but {self.node.size} dofs")
+            raise MatrixFault(
+                f"it has {rows} rows and {columns} columns, but {count_noun(self.node.size, 'dof')}"
+            )
         is_node = self.node != 0
         wrong = is_node & ((self.direction < 1) | (self.direction > DIRECTIONS))
         if wrong.any():
