@@ -15,6 +15,7 @@ from facegear.machine.layout import Body, Tilt
 from facegear.machine.linear_model import lumped_model
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.machine import Damping, OpenFlanks
+from facegear.machine.poses.mesh_poses import mesh_poses
 from facegear.machine.statics import equilibria, mean_equilibrium
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft, follow_rings
 from tests.helpers.box_casings import box_casing, wall_seats
@@ -176,6 +177,21 @@ def test_a_gear_with_tilts_of_its_own_tilts_on_its_seat():
     with_seat = mean_equilibrium(make_small_machine(casing=place_on(mount_public(0)))).forces
     own_tilt = mean_equilibrium(make_small_machine(layout, place_on(mount_public(0), layout))).forces
     np.testing.assert_allclose(own_tilt, with_seat, rtol=1e-6)
+
+
+def test_seats_tilt_the_poses_of_the_teeth_as_tilts_of_the_gears_do():
+    stiff = Body(8.0, 0.04, (8e8, 8e8, 1e9), tilt=Tilt(0.02, 1e13))
+    layouts = make_small_layout(), make_small_layout(gear=stiff)
+    poses = []
+    for layout in layouts:
+        machine = make_small_machine(layout, place_on(mount_public(0), layout))
+        displacements = mean_equilibrium(machine).displacements[0]
+        poses.append(mesh_poses(machine.linear, layout, layout.mesh_radius, displacements))
+    for part in ("offset", "gear_axial", "shaft_angle_error", "outward"):
+        first, second = (getattr(pose, part) for pose in poses)
+        np.testing.assert_allclose(first, second, rtol=1e-5, atol=1e-6 * np.abs(second).max())
+    # The upper gear's seat tilts by 0.63 mrad, which no bearing takes up.
+    assert np.abs(poses[0].shaft_angle_error).max() > 3e-4
 
 
 STEEL = Elasticity(206e9, 0.3)
