@@ -128,6 +128,25 @@ def root_height(design: PairDesign, radius: ArrayLike) -> Array:
     return root_edge(design, radius)[1]
 
 
+def back_height(design: PairDesign) -> float:
+    """Compute the height of the flat back of the gear's rim: its thickness below the lowest place of the
+    root.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        z, m.
+    """
+    gear = design.face_gear
+    roots = root_height(design, np.array([gear.inner_radius, gear.outer_radius]))
+    return float(roots.min()) - gear.rim_thickness
+
+
 def root_land_middle(design: PairDesign, radius: ArrayLike) -> Array:
     """Compute the gear angle of the middle of the root land on the right side of the tooth.
 
