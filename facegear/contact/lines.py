@@ -17,7 +17,7 @@ from facegear.arrays import Array, Integers
 from facegear.teeth import face_gear
 from facegear.teeth.curvature import opposite_curvatures
 from facegear.teeth.design import PairDesign
-from facegear.teeth.helicoid import pinion_start
+from facegear.teeth.pinion import junction_roll, tip_roll
 from facegear.teeth.placement import conjugate_angle, pinion_angle, to_left_flank
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation, separation_each
@@ -124,7 +124,7 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
         roll=roll,
         curvature=curvature,
         slope=slope,
-        to_pinion_tip=_arc(design, last_roll(design, y)) - _arc(design, roll),
+        to_pinion_tip=_arc(design, tip_roll(design, y)) - _arc(design, roll),
         to_gear_tip=to_gear_tip,
         to_end=np.minimum(ends, half - np.abs(y - design.middle)),
         face=_covered_width(design, y, radius),
@@ -157,7 +157,7 @@ def contact_gaps(
     NotConverged
         As `separation` does.
     """
-    roll = np.clip(_min_gap_roll(design, placement, y), first_roll(design, y), last_roll(design, y))
+    roll = np.clip(_min_gap_roll(design, placement, y), first_roll(design, y), tip_roll(design, y))
     flank_separation = separation(design, flank_points(design, roll, y), *placement)
     on = flank_separation.part == FLANK
     points = face_gear.flank_point(
@@ -216,27 +216,7 @@ def first_roll(design: PairDesign, y: Array) -> Array:
     (...) array
         rad.
     """
-    return np.maximum(pinion_start(design.family, 1, y) / design.pinion_base_radius, 0.0)
-
-
-def last_roll(design: PairDesign, y: Array) -> Array:
-    """Compute the roll angle of the involute's end at the tip or its chamfer.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-    y : (...) array
-        Places along the pinion's axis, m.
-
-    Returns
-    -------
-    (...) array
-        rad.
-    """
-    growth = (np.asarray(y, float) - design.middle) * design.family.taper
-    ratio = (design.pinion_tip_radius - design.pinion.tip_chamfer + growth) / design.pinion_base_radius
-    return np.sqrt(np.maximum(ratio**2 - 1, 0.0))
+    return np.maximum(junction_roll(design, y), 0.0)
 
 
 def _arc(design: PairDesign, roll: Array | float) -> Array:
@@ -252,7 +232,7 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
     even in the square of the roll, is refined by parabolas through three gaps. Beyond the tip it ends at
     BEYOND of the profile.
     """
-    top, bottom = last_roll(design, y) ** 2, first_roll(design, y) ** 2
+    top, bottom = (np.broadcast_to(end(design, y) ** 2, y.shape) for end in (tip_roll, first_roll))
     roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
     step = roll_squared[1] - roll_squared[0]
     gap = _sampled_gaps(design, placement, roll_squared, y)

@@ -10,7 +10,6 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.basis_functions import FacingPairs
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
-from facegear.contact.lines import last_roll
 from facegear.contact.options import ContactOptions
 from facegear.contact.position import MARGIN, LoadedPosition, contact_at, first_turn, results_of
 from facegear.contact.position_solver import (
@@ -29,7 +28,7 @@ from facegear.errors import InvalidInput
 from facegear.progress import Progress
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors, PairDesign
-from facegear.teeth.helicoid import pinion_start
+from facegear.teeth.pinion import junction_roll, tip_roll
 from facegear.teeth.placement import pinion_angle
 from facegear.teeth.unloaded_contact import unloaded_contact, unloaded_motion
 
@@ -103,7 +102,7 @@ def check_overlap(design: PairDesign) -> None:
     """
     flank, half = design.family.pinion_flanks[0], design.pinion.width / 2
     y = design.middle + np.array([-half, half])
-    rolls = np.stack([pinion_start(design.family, 1, y) / flank.base_radius, last_roll(design, y)])
+    rolls = np.stack([np.broadcast_to(ends(design, y), y.shape) for ends in (junction_roll, tip_roll)])
     # turn at which a place of the flank has the normal of the pitch line
     turns = rolls + flank.lead / flank.base_radius * (y - flank.middle) - flank.pressure_angle - flank.phase
     pitches = float(np.abs(turns).max()) * design.pinion.teeth / (2 * np.pi)

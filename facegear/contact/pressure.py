@@ -20,11 +20,12 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import FlankPair, PinionSurface
 from facegear.contact.hertz import contact_modulus, strip_pressure
-from facegear.contact.lines import ContactLines, first_roll, last_roll, unloaded_lines
+from facegear.contact.lines import ContactLines, first_roll, unloaded_lines
 from facegear.contact.pattern import EDGES
 from facegear.contact.position import LoadedPosition, Spot
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.pinion import tip_roll
 from facegear.teeth.surfaces import flank_points
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
@@ -378,7 +379,7 @@ def line_rows(lines: ContactLines, surface: PinionSurface) -> Array:
         Row, dimensionless, 0 at the tip edge.
     """
     design = surface.design
-    top, bottom = last_roll(design, lines.y), first_roll(design, lines.y)
+    top, bottom = tip_roll(design, lines.y), first_roll(design, lines.y)
     height = design.pinion_base_radius * (top**2 - bottom**2) / 2
     rows = (surface.side.flank_rows - 1) * surface.lattice.refinement.profile
     return np.clip(lines.to_pinion_tip / height, 0.0, 1.0) * rows

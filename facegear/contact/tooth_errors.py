@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Arrays
-from facegear.contact.lines import contact_gaps, last_roll
+from facegear.contact.lines import contact_gaps
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.contact.teeth import ContactSide
 from facegear.quantities import BODIES, Body
@@ -22,7 +22,6 @@ from facegear.teeth import face_gear, pinion
 from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_shapes import DeviationGrid
-from facegear.teeth.helicoid import pinion_start
 from facegear.teeth.limits import common_face
 from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
 from facegear.teeth.opposite import tip_edge_feet
@@ -135,7 +134,7 @@ def node_places(design: PairDesign, body: Body, side: ContactSide) -> tuple[Arra
     rows = side.flank_rows
     if body == "pinion":
         roll = side.u.copy()
-        roll[rows:] = pinion_start(design.family, 1, side.v[rows:]) / design.pinion_base_radius
+        roll[rows:] = pinion.junction_roll(design, side.v[rows:])
         along, across = pinion.deviation_place(design, roll, side.v)
         return along.ravel(), across.ravel()
     points = face_gear.flank_point(design, side.u[:rows], side.v[:rows])
@@ -216,8 +215,7 @@ def _tip_edge_gaps(
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
     feet = tip_edge_feet(design, edge, placement, None, design.module)
-    top = last_roll(design, feet.y) ** 2
-    bottom = (pinion_start(design.family, 1, feet.y) / design.pinion_base_radius) ** 2
+    top, bottom = pinion.tip_roll(design, feet.y) ** 2, pinion.junction_roll(design, feet.y) ** 2
     roll = np.sqrt(np.maximum(top - feet.flank * (top - bottom), 0.0))
     radii = np.broadcast_to(radius, roll.shape)
     return feet.gap, roll, feet.y, radii, np.zeros(roll.shape)

@@ -27,6 +27,11 @@ _MODIFIED_PARTS = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
 """Indices of the parts that modifications change."""
 
 
+REFINED_GAP = 0.15
+"""Rough distance (modules) below which that from a fillet is taken exactly, where the pinion's sections
+differ."""
+
+
 @dataclass(frozen=True)
 class PinionOutline:
     """The right half tooth from the middle of the tip land to the middle of the space, in the middle section.
@@ -182,27 +187,41 @@ def _set_exact(
     """Replace rough signed distances (m) by those along the surface's normal, in space, where `near`.
 
     rough: the distances (...) and the outline's nearest points (...) of points `section` (..., 3), x, -z, y.
+    A point that lies beside another part than that of its nearest point gets the end of that part's outline.
     """
     signed_length, nearest = rough
+    flank, fillet = (np.flatnonzero(outline.part == PINION_PARTS.index(name)) for name in ("flank", "fillet"))
+    # beside the tip of its own section a point belongs to the flank, wherever the middle section's tip ends
+    angle, tip = np.arctan2(section[..., 0], section[..., 1]), PINION_PARTS.index("tip land")
+    beside = near & (outline.part[nearest] == tip) & (angle > pinion.tip_half_angle(design, section[..., 2]))
+    nearest[beside] = flank[0]
     part, taper = outline.part[nearest], np.cos(design.taper_angle)
     for name, radius in (("tip land", pinion.tip_radius), ("root land", pinion.root_radius)):
         rows = near & (part == PINION_PARTS.index(name))
         ground = section[rows]
         signed_length[rows] = (np.hypot(ground[:, 0], ground[:, 1]) - radius(design, ground[:, 2])) * taper
-    is_on = near & (part == PINION_PARTS.index("flank"))
-    feet = flank_feet(design, section[is_on])
-    on_flank = np.isfinite(feet.gap)
-    signed_length[is_on] = np.where(on_flank, feet.gap, signed_length[is_on])
-    in_fillet = near & (part == PINION_PARTS.index("fillet"))
-    in_fillet[is_on] = ~on_flank
-    gamma = np.full(len(outline.points), design.transverse_pressure_angle)
-    on_curve = outline.part == PINION_PARTS.index("fillet")
-    gamma[on_curve] = np.linspace(design.transverse_pressure_angle, pi / 2, np.count_nonzero(on_curve))
-    points = section[in_fillet][:, [0, 2, 1]] * [1.0, 1.0, -1.0]
-    gap, slope, y = fillet_feet(design, points, gamma[nearest[in_fillet]])
-    gap = gap + pinion.removed_depth(design, pinion.junction_roll(design, y), y)
-    on = np.isfinite(gap) & (slope >= design.transverse_pressure_angle) & (slope <= pi / 2)
-    signed_length[in_fillet] = np.where(on, gap, signed_length[in_fillet])
+    rows = np.nonzero(near & ((nearest >= flank[0]) & (nearest <= fillet[-1])))
+    feet = flank_feet(design, section[rows])
+    gap, at = np.where(np.isfinite(feet.gap), feet.gap, np.inf), nearest[rows]
+    at = np.where(np.isfinite(gap), np.minimum(at, flank[-1]), at)
+    is_low = (nearest[rows] > flank[-1]) | (~np.isfinite(gap) & (nearest[rows] > flank[len(flank) // 2]))
+    is_low &= (signed_length[rows] < REFINED_GAP * design.module) & ~(gap < -REFINED_GAP * design.module)
+    low = np.flatnonzero(is_low)
+    ground = section[rows][low]
+    angles = np.linspace(design.transverse_pressure_angle, pi / 2, len(fillet))
+    start = angles[np.maximum(nearest[rows][low] - fillet[0], 0)]
+    apart, slope, y = fillet_feet(design, ground[:, [0, 2, 1]] * [1.0, 1.0, -1.0], start)
+    apart = apart + pinion.removed_depth(design, pinion.junction_roll(design, y), y)
+    on = (
+        np.isfinite(apart) & (slope >= angles[0]) & (slope <= angles[-1]) & (np.abs(apart) < np.abs(gap[low]))
+    )
+    gap[low[on]], at[low[on]] = apart[on], np.maximum(nearest[rows][low[on]], fillet[0])
+    on_land = np.isfinite(apart) & (slope > angles[-1]) & ~np.isfinite(gap[low])
+    land = np.hypot(ground[:, 0], ground[:, 1]) - pinion.root_radius(design, ground[:, 2])
+    gap[low[on_land]], at[low[on_land]] = land[on_land] * taper, fillet[-1] + 1
+    is_found = np.isfinite(gap)
+    signed_length[rows] = np.where(is_found, gap, signed_length[rows])
+    nearest[rows] = np.where(is_found, at, nearest[rows])
 
 
 TOOTH_NUMBERS = np.arange(-2.0, 3.0)

@@ -1,14 +1,15 @@
 """Points of the gear's tooth opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+import scipy
 from scipy.spatial import cKDTree
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.teeth import face_gear, face_gear_fillet, pinion
-from facegear.teeth.design import PairDesign
+from facegear.teeth.design import PairDesign, as_cut
 from facegear.teeth.helicoid import pinion_fillet
 from facegear.teeth.placement import to_pinion_section
 from facegear.teeth.rays import FILLET, FLANK, TIP_LAND
@@ -17,12 +18,18 @@ from facegear.teeth.surfaces import fillet_points
 
 FILLET_SAMPLES = 2000
 """Number of points of the fillet's curve between which it is interpolated."""
+STEPS_ON_CIRCLES = 2
+"""Steps of a foot on the fillet of a prismatic pinion from a point beside it."""
 FOOT_STEPS, CLOSE = 20, 1e-14
 """Newton steps of a foot on the fillet, and the step (m) that ends them."""
 ANGLE_STEP, PLACE_STEP = 1e-5, 1e-6
 """Steps in gamma (rad) and y (m) by which the normal's change is taken, which affect convergence alone."""
 LARGEST_TURN, FARTHEST_TURN = 0.2, 1.0
 """Largest Newton step in gamma (rad), and the farthest a foot may be from the start of its search."""
+
+
+END_POINTS = 65
+"""Points of the end of a tapered gear's flank, as of its tip edge: its spline is within 3e-10 rad."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +141,15 @@ def _last_roll(design: PairDesign, radius: Array) -> Array:
     """Return the roll (rad) at which the gear's flank ends at radii (n,), m; one number without taper."""
     if design.taper_angle == 0.0:
         return np.asarray(design.shaper_tip_roll)
-    return face_gear.end_parameters(design, radius)[0]
+    return _end_roll_by_radius(as_cut(design))(radius)
+
+
+@lru_cache(maxsize=16)
+def _end_roll_by_radius(design: PairDesign) -> "scipy.interpolate.CubicSpline":
+    """Return a spline through END_POINTS exact rolls (rad) of the flank's end over the face (m); cached."""
+    face = design.face_gear
+    radius = np.linspace(face.inner_radius, face.outer_radius, END_POINTS)
+    return scipy.interpolate.CubicSpline(radius, face_gear.end_parameters(design, radius)[0])
 
 
 def tip_edge_feet(
@@ -225,10 +240,10 @@ def _fillet_feet(
     """Return gap (m, inf without foot), gamma (rad), lever arm (m) and y (m), (n,) each, of points (n, 3), x,
     -z, y in m.
 
-    The foot is the nearest of the curve's points, its ends left out; the gap is taken along the normal there.
-    Where sections differ the foot is found from there by Newton's method.
+    The foot is searched from the nearest of the curve's points, its ends left out; where sections differ by
+    Newton's method.
     """
-    curve, normal = fillet.points, fillet.normals
+    curve = fillet.points
     gap, gamma, lever_arm = (np.full(len(section), value) for value in (np.inf, np.nan, 0.0))
     all_y = section[:, 2].copy()
     turned_back = section[:, :2] if is_prismatic(design) else to_middle_section(design, section)
@@ -236,13 +251,12 @@ def _fillet_feet(
     close = np.flatnonzero(((turned_back > low) & (turned_back < high)).all(axis=1))
     nearest = fillet.tree.query(turned_back[close])[1]
     if is_prismatic(design):
-        near_points = section[close]
-        apart = np.sum((near_points[:, :2] - curve[nearest]) * normal[nearest], axis=1)
-        apart += pinion.removed_depth(design, pinion.junction_roll(design, design.middle), near_points[:, 2])
-        on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
+        on = (nearest > 0) & (nearest < len(curve) - 1)
         close, nearest = close[on], nearest[on]
-        gap[close], gamma[close] = apart[on], fillet.gamma[nearest]
-        lever_arm[close] = curve[nearest, 1] * normal[nearest, 0] - curve[nearest, 0] * normal[nearest, 1]
+        apart, foot, arm = _prismatic_feet(design, section[close], fillet, nearest)
+        on = np.abs(apart) < search_radius
+        close = close[on]
+        gap[close], gamma[close], lever_arm[close] = apart[on], foot[on], arm[on]
         return gap, gamma, lever_arm, all_y
     points = section[close][:, [0, 2, 1]] * [1.0, 1.0, -1.0]
     apart, foot, foot_y = fillet_feet(design, points, fillet.gamma[nearest])
@@ -253,6 +267,30 @@ def _fillet_feet(
     gamma[close], all_y[close] = foot, foot_y
     lever_arm[close] = fillet_points(design, foot, foot_y).lever_arm
     return gap, gamma, lever_arm, all_y
+
+
+def _prismatic_feet(
+    design: PairDesign, section: Array, fillet: FilletCurve, nearest: Integers
+) -> tuple[Array, Array, Array]:
+    """Return distance along the normal (m), gamma (rad) and lever arm (m), (n,) each, of the feet of points
+    (n, 3), x, -z, y in m, near the curve's points `nearest` (n,), none of which is an end.
+
+    Each step finds the foot on a circle that touches the curve.
+    """
+    before, after, y = nearest - 1, nearest + 1, section[:, 2]
+    chord, turn = (part[after] - part[before] for part in (fillet.points, fillet.normals))
+    length, gamma = np.linalg.norm(chord, axis=1), fillet.gamma[nearest]
+    bend = np.sum(turn * chord, axis=1) / length**2
+    change = (fillet.gamma[after] - fillet.gamma[before]) / length
+    for step in range(STEPS_ON_CIRCLES + 1):
+        surface = fillet_points(design, gamma, y)
+        place, normal = (part[:, [0, 2]] * [1.0, -1.0] for part in (surface.position, surface.normal))
+        away, tangent = section[:, :2] - place, normal[:, ::-1] * [1.0, -1.0]
+        apart = np.sum(away * normal, axis=1)
+        if step < STEPS_ON_CIRCLES:
+            along = np.sum(away * tangent, axis=1) * np.sign(np.sum(chord * tangent, axis=1))
+            gamma = gamma + change * along / (1.0 + bend * apart)
+    return apart, gamma, surface.lever_arm
 
 
 def is_prismatic(design: PairDesign) -> bool:

@@ -19,6 +19,10 @@ from facegear.teeth.tooth_family import ToothFamily
 
 SAMPLES = 25
 """Points of the sampled flank each way."""
+FILLET_HEIGHTS = 17
+"""Places of the fillet from which searches begin, as the kernel has them."""
+SAFETY, ROUNDING = 4.0, 1e-12
+"""Factor by which the tip edge may be farther from its parabola than at any sample, and rounding (rad)."""
 RIGHT = -1
 """Sign of the flank that stands on the right of the gear's tooth."""
 
@@ -49,14 +53,21 @@ class Shaper(NamedTuple):
 
 
 class Guess(NamedTuple):
-    """Where searches on a flank begin: `roll` and `psi` (6,), rad, are the factors of 1, r, d, r squared, r d
-    and d squared, r being the distance (m) from a gear `radius`, d the depth (m) below the tip up to `depth`.
+    """Where searches on a side begin, by the distance r (m) from a gear `radius` and the depth d (m) below
+    the tip. `roll` and `psi` (6,), rad, are the factors of 1, r, d, r squared, r d and d squared, for d up to
+    `depth`.
     """
 
     radius: float
     depth: float
     roll: Array
     psi: Array
+    edge: Array
+    """Factors (3,) of the tip edge's gear angle (rad), of rising powers of r."""
+    edge_error: float
+    """Larger than any error of that angle, rad."""
+    fillet: Array
+    """Depths (FILLET_HEIGHTS,), m, at even steps of the fillet's angle at the radius."""
 
 
 class Side(NamedTuple):
@@ -180,13 +191,32 @@ def _side(family: ToothFamily, sample: FlankSample) -> Side:
         tip_centre=fillet.centre_radius,
         tip_rounding=fillet.rounding,
     )
-    radius = np.hypot(sample.points[:, 0], sample.points[:, 1])
-    center, depth = radius.mean(), family.gear_tip.height(radius) - sample.points[:, 2]
+    return Side(numbers, _guess(family, sample))
+
+
+def _guess(family: ToothFamily, sample: FlankSample) -> Guess:
+    """Return where searches on a family's right side begin, whose flank is sampled."""
+    points, fillet = sample.points, gear_fillet(family, RIGHT)
+    radius = np.hypot(points[:, 0], points[:, 1])
+    center, depth = radius.mean(), family.gear_tip.height(radius) - points[:, 2]
     along, down = (radius - center) / center, depth / center
     terms = np.stack([np.ones_like(along), along, down, along**2, along * down, down**2], axis=-1)
-    scale = center ** -np.array([0.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-    roll, psi = (np.linalg.lstsq(terms, values)[0] * scale for values in (sample.rolls, sample.psis))
-    return Side(numbers, Guess(float(center), float(depth.max()), roll, psi))
+    powers = np.array([0.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    roll, psi = (np.linalg.lstsq(terms, values)[0] / center**powers for values in (sample.rolls, sample.psis))
+    angle, on_edge = np.arctan2(points[::SAMPLES, 0], points[::SAMPLES, 1]), terms[::SAMPLES, [0, 1, 3]]
+    edge = np.linalg.lstsq(on_edge, angle)[0]
+    parts = np.linspace(0.0, 1.0, FILLET_HEIGHTS)
+    y = fillet.y_at(center, parts)
+    heights = fillet.generate(y, parts * fillet.last_angle(y)).position[:, 2]
+    return Guess(
+        radius=float(center),
+        depth=float(depth.max()),
+        roll=roll,
+        psi=psi,
+        edge=edge / center ** np.arange(3.0),
+        edge_error=SAFETY * float(np.abs(on_edge @ edge - angle).max()) + ROUNDING,
+        fillet=float(family.gear_tip.height(center)) - heights,
+    )
 
 
 def _flank_sample(family: ToothFamily) -> FlankSample:

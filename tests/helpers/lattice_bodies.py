@@ -33,18 +33,18 @@ def whole_flank(design: PairDesign, shape: tuple[int, int]) -> ContactSide:
     return side_of(u, np.broadcast_to(y, u.shape))
 
 
-def patch(design: PairDesign, centre: tuple[float, float], step: tuple[float, float], shape) -> ContactSide:
-    """Return a patch of the pinion's flank about (transverse length of roll, y), m, rows along generators.
+def patch(design: PairDesign, centre: tuple[float, float], step: tuple[float, float], shape, slope=0.0):
+    """Return a patch of the pinion's flank about (transverse length of roll, y), m, with rows along lines.
 
-    `step`: distances (m) of nodes across generators and along them.
+    `step`: distances (m) of nodes across generators and along them; `slope` (rad) of the lines against the
+    generators, from these towards the root.
     """
     flank, (roll, y) = design.family.pinion_flanks[0], centre
-    across = step[0] * (np.arange(shape[0]) - (shape[0] - 1) / 2)
-    along = step[1] * flank.cosine * (np.arange(shape[1]) - (shape[1] - 1) / 2)
+    along = step[1] * (np.arange(shape[1]) - (shape[1] - 1) / 2)
+    across = step[0] * (np.arange(shape[0]) - (shape[0] - 1) / 2)[:, None] + np.tan(slope) * along
     # the arc of an involute is s^2 / (2 r_b)
-    middle = np.sqrt(roll**2 - 2.0 * flank.base_radius * across)[:, None]
-    u = (middle - flank.lead * along) / flank.base_radius
-    return side_of(u, np.broadcast_to(y + along, u.shape))
+    u = np.sqrt(roll**2 - 2.0 * flank.base_radius * across) - flank.lead * flank.cosine * along
+    return side_of(u / flank.base_radius, np.broadcast_to(y + flank.cosine * along, u.shape))
 
 
 def model_of(design: PairDesign, pinion: ContactSide, compliance) -> ContactModel:
@@ -85,13 +85,15 @@ def half_spaces(modulus: float):
 
     def compliance(_, nodes: Array) -> Array:
         rows, columns = nodes.shape[:2]
-        middle = rows // 2, columns // 2
-        size = [
-            np.linalg.norm(nodes[middle[0] + a, middle[1] + b] - nodes[middle[0] - a, middle[1] - b]) / 2
-            for a, b in ((1, 0), (0, 1))
-        ]
-        x, y = np.meshgrid(np.arange(rows) * size[0], np.arange(columns) * size[1], indexing="ij")
-        left, right, low, high = x - size[0] / 2, x + size[0] / 2, y - size[1] / 2, y + size[1] / 2
+        row, column = rows // 2, columns // 2
+        across = (nodes[row + 1, column] - nodes[row - 1, column]) / 2
+        along = (nodes[row, column + 1] - nodes[row, column - 1]) / 2
+        size = np.linalg.norm(across)
+        shear = along @ across / size
+        length = np.sqrt(along @ along - shear**2)
+        places = np.arange(1.0 - rows, rows)[:, None], np.arange(1.0 - columns, columns)
+        x, y = np.broadcast_arrays(places[0] * size + places[1] * shear, places[1] * length)
+        left, right, low, high = x - size / 2, x + size / 2, y - length / 2, y + length / 2
 
         def part(coordinate: Array, first: Array, second: Array) -> Array:
             sums = (end + np.hypot(end, coordinate) for end in (first, second))
@@ -99,9 +101,9 @@ def half_spaces(modulus: float):
 
         by_distance = (
             part(right, high, low) + part(high, right, left) + part(left, low, high) + part(low, left, right)
-        ) / (np.pi * modulus * size[0] * size[1])
-        apart = np.abs(np.arange(rows)[:, None] - np.arange(rows))
-        beside = np.abs(np.arange(columns)[:, None] - np.arange(columns))
+        ) / (np.pi * modulus * size * length)
+        apart = np.arange(rows)[:, None] - np.arange(rows) + rows - 1
+        beside = np.arange(columns)[:, None] - np.arange(columns) + columns - 1
         matrix = by_distance[apart[:, None, :, None], beside[None, :, None, :]]
         return matrix.reshape(rows * columns, rows * columns)
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from facegear._kernels import bearings, flanks, samples, statics, strength
 from facegear.machine.block_statics import Springs
 from facegear.meshing.law import LinearHeld, LoadDependentHeld
-from facegear.teeth.rays import Blank, Shaper
+from facegear.teeth.rays import Blank, Guess, Shaper
 
 
 def make_blank():
@@ -18,7 +18,8 @@ def make_blank():
     sides, lines = ("flank", "back"), ("tip", "root", "middle")
     blank = SimpleNamespace(**dict.fromkeys({*Blank._fields} - {*sides, *lines}, 1.0))
     for name in sides:
-        guess = SimpleNamespace(radius=1.0, depth=1.0, roll=np.ones(6), psi=np.ones(6))
+        guess = SimpleNamespace(**dict.fromkeys(Guess._fields, 1.0))
+        guess.roll, guess.psi, guess.edge, guess.fillet = (np.ones(count) for count in (6, 6, 3, 17))
         side = SimpleNamespace(shaper=SimpleNamespace(**dict.fromkeys(Shaper._fields, 1.0)), guess=guess)
         setattr(blank, name, side)
     for name in lines:

@@ -15,11 +15,13 @@ namespace {
 using namespace bindings;
 using namespace flanks;
 
-std::array<double, 6> factors_of(const Record& given, const char* field) {
-    const auto factors = given.array<double, 1>(field);
-    require(factors.size() == 6, "a polynomial of second degree in two variables has 6 factors");
-    std::array<double, 6> result;
-    std::copy_n(factors.data(), 6, result.begin());
+template <std::size_t Size>
+std::array<double, Size> numbers_of(const Record& given, const char* field) {
+    const auto numbers = given.array<double, 1>(field);
+    require(numbers.size() == Size,
+            "polynomials and tables of guesses must have as many numbers as they need");
+    std::array<double, Size> result;
+    std::copy_n(numbers.data(), Size, result.begin());
     return result;
 }
 
@@ -43,8 +45,11 @@ Side side_of(const Record& given) {
         {
             .radius = guess.number("radius"),
             .depth = guess.number("depth"),
-            .roll = factors_of(guess, "roll"),
-            .psi = factors_of(guess, "psi"),
+            .roll = numbers_of<6>(guess, "roll"),
+            .psi = numbers_of<6>(guess, "psi"),
+            .edge = numbers_of<3>(guess, "edge"),
+            .edge_error = guess.number("edge_error"),
+            .fillet = numbers_of<FILLET_HEIGHTS>(guess, "fillet"),
         },
     };
 }

@@ -4,10 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "tables.hpp"
 
 namespace facegear::flanks {
+
+// Places of the fillet from which searches begin.
+constexpr std::size_t FILLET_HEIGHTS = 17;
 
 // The shaper and its place against the gear; lengths in m, angles in rad.
 struct Shaper {
@@ -25,15 +29,23 @@ struct Shaper {
     double tip_rounding; // radius of that rounding
 };
 
-// Where searches on a flank begin: polynomials of second degree in the distance (m) of a place from `radius`
-// and in its depth (m) below the tip, no deeper than `depth`.
+// Where searches on a side begin, over the distance (m) of a place from a gear radius and its depth (m) below
+// the tip. Roll and psi of the flank are polynomials of second degree in both, for depths up to `depth`.
 struct Guess {
     double radius, depth;
     std::array<double, 6> roll, psi;
+    std::array<double, 3> edge;                // gear angle of the tip edge, in rising powers of the distance
+    double edge_error;                         // larger than any error of that angle, rad
+    std::array<double, FILLET_HEIGHTS> fillet; // depths below the tip at even steps of the fillet's angle
 
     static double at(const std::array<double, 6>& factors, double along, double down) {
         return factors[0] + along * (factors[1] + along * factors[3] + down * factors[4]) +
                down * (factors[2] + down * factors[5]);
+    }
+
+    double edge_at(double gear_radius) const {
+        const double along = gear_radius - radius;
+        return edge[0] + along * (edge[1] + along * edge[2]);
     }
 };
 
@@ -41,19 +53,28 @@ struct Guess {
 struct Side {
     Shaper shaper;
     Guess guess;
-    double cosine;    // of the base helix
-    double lead;      // its tangent
-    double reach;     // base radius over ratio, m
-    double tilt;      // lead times sine of the shaft angle
-    double upright;   // 1 over sine of the shaft angle
-    double roll_turn; // turn of the gear per roll
-    double lead_turn; // turn of the shaper per length of its face, rad/m
+    double cosine;     // of the base helix
+    double lead;       // its tangent
+    double across;     // transverse length of roll per roll, m
+    double reach;      // base radius over ratio, m
+    double tilt;       // lead times sine of the shaft angle
+    double fall;       // lead times cosine of the shaft angle
+    double upright;    // 1 over sine of the shaft angle
+    double roll_turn;  // turn of the gear per roll
+    double place_turn; // turn of the gear per length along the shaper's face, rad/m
 
     Side(const Shaper& shaper, const Guess& guess)
-        : shaper(shaper), guess(guess), cosine(std::sqrt(1.0 - shaper.sine * shaper.sine)),
-          lead(shaper.sine / cosine), reach(shaper.base / shaper.ratio), tilt(lead * shaper.shaft_sine),
-          upright(1.0 / shaper.shaft_sine), roll_turn(-shaper.ratio / cosine),
-          lead_turn(lead / shaper.base) {}
+        : shaper(shaper),
+          guess(guess),
+          cosine(std::sqrt(1.0 - shaper.sine * shaper.sine)),
+          lead(shaper.sine / cosine),
+          across(shaper.base * cosine),
+          reach(shaper.base / shaper.ratio),
+          tilt(lead * shaper.shaft_sine),
+          fall(lead * shaper.shaft_cosine),
+          upright(1.0 / shaper.shaft_sine),
+          roll_turn(-shaper.ratio / cosine),
+          place_turn(shaper.ratio * lead / shaper.base) {}
 };
 
 // A straight meridian of a surface about the gear's axis: heights over gear radii.

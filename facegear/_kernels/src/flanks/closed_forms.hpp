@@ -62,32 +62,28 @@ inline Generated<Number> generated(const Side& side, Number length, Turn<Number>
 template <class Number>
 inline Number gear_turn(const Side& side, Number roll, Number psi, Number place) {
     const Number along = place - alike<Number>(side.shaper.middle);
-    return alike<Number>(side.shaper.ratio) *
-               (psi + alike<Number>(side.shaper.phase) - alike<Number>(side.lead_turn) * along) +
-           alike<Number>(side.roll_turn) * roll;
+    return alike<Number>(side.shaper.ratio) * (psi + alike<Number>(side.shaper.phase)) +
+           (alike<Number>(side.roll_turn) * roll - alike<Number>(side.place_turn) * along);
 }
 
 // A point of the flank in the gear's body frame, with derivatives by roll and psi.
 template <class Number>
 struct FlankPoint {
     Frame<Number> frame;
+    Number turn;               // of the gear since the shaper generated it
     Number place, place_slope; // of the normal's foot along the shaper's axis, m, and its derivative by psi
 };
 
+// From where the shaper generates it, by the gear's turn since then.
 template <class Number>
-inline FlankPoint<Number> flank_point(const Side& side, Number roll, Number psi) {
-    const Turn<Number> slope = turn_by<QUARTER_TERMS>(psi);
-    const Number across = alike<Number>(side.shaper.base * side.cosine);
-    const auto from = generated(side, across * roll, slope);
-    const Turn<Number> turn = turn_by<SMALL_TERMS>(gear_turn(side, roll, psi, from.place));
-    const Number by_roll = alike<Number>(side.roll_turn);
-    const Number by_psi = alike<Number>(side.shaper.ratio) *
-                          (alike<Number>(1.0) - alike<Number>(side.lead_turn) * from.place_slope);
+inline FlankPoint<Number> turned_point(const Side& side, Turn<Number> slope, const Generated<Number>& from,
+                                       Number angle, Turn<Number> turn) {
+    const Number across = alike<Number>(side.across), by_roll = alike<Number>(side.roll_turn);
+    const Number by_psi =
+        alike<Number>(side.shaper.ratio) - alike<Number>(side.place_turn) * from.place_slope;
     const Vector<Number> point = turn.of({from.x, from.y, from.z});
-    const Number down = alike<Number>(side.lead * side.shaper.shaft_cosine) +
-                        alike<Number>(side.shaper.shaft_sine) * slope.sine;
-    const Vector<Number> along =
-        turn.of({-(across * slope.cosine), across * from.tilt, -(across * down)});
+    const Number down = alike<Number>(side.fall) + alike<Number>(side.shaper.shaft_sine) * slope.sine;
+    const Vector<Number> along = turn.of({-(across * slope.cosine), across * from.tilt, -(across * down)});
     const Vector<Number> aside = turn.of({from.x_psi, from.y_psi, from.z_psi});
     return {
         {
@@ -95,25 +91,33 @@ inline FlankPoint<Number> flank_point(const Side& side, Number roll, Number psi)
             {along.x - by_roll * point.y, along.y + by_roll * point.x, along.z},
             {aside.x - by_psi * point.y, aside.y + by_psi * point.x, aside.z},
         },
+        angle,
         from.place,
         from.place_slope,
     };
 }
 
-// Cosine of the outward normal with a direction, times the base radius.
-inline double facing(const Side& side, const Frame<double>& frame, Vector<double> way) {
-    const Vector<double> point = frame.point;
-    return side.roll_turn * (point.x * way.y - point.y * way.x) - dot(frame.by_first, way);
+inline FlankPoint<double> flank_point(const Side& side, double roll, double psi) {
+    const Turn<double> slope = turn_by<STEEP_TERMS>(psi);
+    const auto from = generated(side, side.across * roll, slope);
+    const double angle = gear_turn(side, roll, psi, from.place);
+    return turned_point(side, slope, from, angle, turn_by<SMALL_TERMS>(angle));
 }
 
-// Roll at which the flank ends: where the shaper's tip rounding begins on a normal with its foot at `place`.
-inline double end_roll(const Side& side, double place) {
+// Cosine of the outward normal with a direction, times the base radius.
+template <class Number>
+inline Number facing(const Side& side, const Frame<Number>& frame, Vector<Number> way) {
+    const Vector<Number> point = frame.point;
+    return alike<Number>(side.roll_turn) * (point.x * way.y - point.y * way.x) - dot(frame.by_first, way);
+}
+
+// Whether the flank has not ended at a roll, where the shaper's tip rounding begins, on a normal with its
+// foot at `place`.
+inline bool is_before_end(const Side& side, double roll, double place) {
     const Shaper& shaper = side.shaper;
-    const double radius = shaper.tip_centre + (place - shaper.middle) * shaper.taper;
-    const double growth = shaper.sine * shaper.taper, half = growth * radius;
-    const double square = side.cosine * side.cosine - growth * growth;
-    const double root = std::sqrt(half * half + square * (radius * radius - shaper.base * shaper.base));
-    return ((half + root) / square + shaper.tip_rounding) / shaper.base;
+    const double s = shaper.base * roll - shaper.tip_rounding, across = side.cosine * s;
+    const double radius = shaper.tip_centre + (place + shaper.sine * s - shaper.middle) * shaper.taper;
+    return s <= 0.0 || across * across + shaper.base * shaper.base <= radius * radius;
 }
 
 // Gear angle of the tip edge, from the tooth's middle, at a gear radius; not a number where it is not found.
@@ -123,7 +127,7 @@ inline double tip_edge_angle(const Side& side, const Line& tip, double radius) {
     for (const double shift : SHIFTS) {
         double psi = near + shift;
         for (int i = 0; i < PSI_STEPS; ++i) {
-            const Turn<double> slope = turn_by<QUARTER_TERMS>(psi);
+            const Turn<double> slope = turn_by<STEEP_TERMS>(psi);
             const auto foot = generated(side, 0.0, slope);
             // the height falls by so much per length of roll
             const double down = (slope.sine + shaft_cosine * foot.tilt) * side.upright;
@@ -138,10 +142,11 @@ inline double tip_edge_angle(const Side& side, const Line& tip, double radius) {
             if (!(std::fabs(step) < CLOSE)) continue;
             // beyond the singular line the radius falls with the slope
             if (!(growth > 0)) break;
-            const double roll = length / (side.shaper.base * side.cosine) -
-                                step * by_psi / (side.shaper.base * side.cosine);
-            const Vector<double> point = flank_point(side, roll, psi).frame.point;
-            return std::atan2(point.x, point.y);
+            const double by_length = -step * by_psi;
+            const double x = edge.x - step * edge.x_psi - by_length * slope.cosine,
+                         y = edge.y - step * edge.y_psi + by_length * edge.tilt;
+            const double place = foot.place - step * foot.place_slope;
+            return std::atan2(x, y) - gear_turn(side, (length + by_length) / side.across, psi, place);
         }
     }
     return UNKNOWN;

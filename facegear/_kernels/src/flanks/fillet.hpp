@@ -19,10 +19,10 @@ constexpr double CLOSE_PLACE = 1e-9;
 // The ball's centre and its normal where the shaper generates: the equation of meshing is
 // k1 cos psi + k2 sin psi = k0.
 struct TipSection {
-    double y, cosine, sine;            // of the normal's angle
-    double centre, roll, roll_y;       // radius of the ball's centre, its length of roll and growth with y
-    double a, b, advance, tilt;        // parts of the centre along the normal and across it; of the normal
-    double k1, k2, k0, square, steep;  // the equation, k1^2 + k2^2, and the root of that less k0^2
+    double y, cosine, sine;           // of the normal's angle
+    double centre, roll, roll_y;      // radius of the ball's centre, its length of roll and growth with y
+    double a, b, advance, tilt;       // parts of the centre along the normal and across it; of the normal
+    double k1, k2, k0, square, steep; // the equation, k1^2 + k2^2, and the root of that less k0^2
     double psi_cosine, psi_sine;
 
     TipSection(const Side& side, double y, double angle)

@@ -105,10 +105,19 @@ struct SingleRay {
                        [&](double radius) { return Rise{blank.tip.at(radius), blank.tip.slope}; });
         part = TIP_LAND;
         if (!is_hit()) return;
-        const double right = tip_edge_angle(blank.flank, blank.tip, hit.radius),
-                     left = tip_edge_angle(blank.back, blank.tip, hit.radius);
-        lost += std::isnan(right) || std::isnan(left);
-        if (!(-left <= hit.u && hit.u <= right)) hit.distance = MISSED;
+        const double from_middle =
+            2 * hit.u - blank.flank.guess.edge_at(hit.radius) + blank.back.guess.edge_at(hit.radius);
+        if (!(from_middle > 0 ? is_within_edge(blank.flank, hit.u) : is_within_edge(blank.back, -hit.u)))
+            hit.distance = MISSED;
+    }
+
+    // Whether a place of the tip land is within the edge of a side.
+    bool is_within_edge(const Side& side, double angle) {
+        const double guess = side.guess.edge_at(hit.radius);
+        if (std::fabs(angle - guess) > side.guess.edge_error) return angle < guess;
+        const double edge = tip_edge_angle(side, blank.tip, hit.radius);
+        lost += std::isnan(edge);
+        return angle <= edge;
     }
 
     void meet_root_land(double start_radius) {

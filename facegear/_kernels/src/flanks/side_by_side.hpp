@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "flanks/closed_forms.hpp"
 #include "flanks/newton.hpp"
@@ -33,12 +32,13 @@ using Four = Lanes<WIDTH>;
 // What WIDTH lanes keep of their rays.
 struct LaneGroup {
     Vector<Four> start, way;
-    Across<Four> beside;
+    Across<Four> beside;   // as long as the part of the way across y
     Four roll, psi;        // of a point of the flank
     FlankPoint<Four> at;   // there
     NewtonStep<Four> step; // from there
     Four next_roll, next_psi;
     Four length;            // where the step leads along the ray, m
+    Four facing;            // cosine of the ray with the flank's normal, times a length
     Four has_ray, is_going; // 1 or 0
 };
 
@@ -60,7 +60,7 @@ class SideBySide {
             group_of(k).has_ray.set(k % WIDTH, 0.0);
             send_anywhere(k);
         }
-        for (LaneGroup& group : groups) take_newton_step(group);
+        take_newton_steps();
     }
 
     // Cuts those of the rays that `live` numbers. Where one misses, nothing is written.
@@ -89,13 +89,8 @@ class SideBySide {
     LaneGroup& group_of(int k) { return groups[k / WIDTH]; }
 
     void set_ray(int k, const Ray& ray) {
-        LaneGroup& group = group_of(k);
-        const Across<double> beside = across(ray.way);
-        set(group.start, k, ray.start);
-        set(group.way, k, ray.way);
-        group.beside.x.set(k % WIDTH, beside.x);
-        group.beside.z.set(k % WIDTH, beside.z);
-        set(group.beside.second, k, beside.second);
+        set(group_of(k).start, k, ray.start);
+        set(group_of(k).way, k, ray.way);
     }
 
     static void set(Vector<Four>& all, int k, Vector<double> one) {
@@ -128,7 +123,11 @@ class SideBySide {
 
     // Newton's step from the frame that the ray before has met.
     static void step_from_last(LaneGroup& group) {
-        group.step = newton_step(group.start, group.beside, group.at.frame);
+        const Vector<Four> way = group.way;
+        group.beside = {way.z, -way.x, {-(way.x * way.y), way.x * way.x + way.z * way.z, -(way.y * way.z)}};
+        const NewtonStep<Four> step = newton_step(group.start, group.beside, group.at.frame);
+        group.step.first = step.first;
+        group.step.second = step.second;
     }
 
     void start(int k) {
@@ -163,46 +162,68 @@ class SideBySide {
         while (going > LATE && longest + taken < NEWTON_STEPS) {
             ++taken;
             Four count = Four::splat(0.0);
-            for (LaneGroup& group : groups) {
-                take_newton_step(group);
-                count = count + group.has_ray * group.is_going;
-            }
+            take_newton_steps();
+            for (const LaneGroup& group : groups) count = count + group.has_ray * group.is_going;
             going = count[0] + count[1] + count[2] + count[3];
         }
         for (Queue& queue : queues) queue.steps += taken;
     }
 
-    // The flank's frames where all lanes go on, and Newton's steps from there, no longer than allowed.
-    void take_newton_step(LaneGroup& group) const {
+    // The flank's points where all lanes go on, and Newton's steps from there, no longer than allowed. Groups
+    // take each part of it together, so that none waits for its own series.
+    void take_newton_steps() {
+        const Side& side = blank.flank;
+        std::array<Turn<Four>, GROUPS> slopes, turns;
+        std::array<Generated<Four>, GROUPS> from;
+        std::array<Four, GROUPS> angles;
+        for (int i = 0; i < GROUPS; ++i) slopes[i] = turn_by<STEEP_TERMS>(groups[i].next_psi);
+        for (int i = 0; i < GROUPS; ++i) {
+            const Four roll = groups[i].next_roll;
+            from[i] = generated(side, Four::splat(side.across) * roll, slopes[i]);
+            angles[i] = gear_turn(side, roll, groups[i].next_psi, from[i].place);
+        }
+        for (int i = 0; i < GROUPS; ++i) turns[i] = turn_by<SMALL_TERMS>(angles[i]);
+        for (int i = 0; i < GROUPS; ++i)
+            step_from(groups[i], turned_point(side, slopes[i], from[i], angles[i], turns[i]));
+    }
+
+    void step_from(LaneGroup& group, const FlankPoint<Four>& at) const {
         const Four roll = group.next_roll, psi = group.next_psi;
-        group.at = flank_point(blank.flank, roll, psi);
-        const NewtonStep<Four> step = newton_step(group.start, group.beside, group.at.frame);
-        const Four limit = Four::splat(LARGEST_STEP);
-        const Four part = limit / larger(larger(absolute(step.first), absolute(step.second)), limit);
+        const NewtonStep<Four> step = newton_step(group.start, group.beside, at.frame);
+        const Four most = Four::splat(LARGEST_STEP), least = Four::splat(-LARGEST_STEP);
         group.roll = roll;
         group.psi = psi;
+        group.at = at;
         group.step = step;
-        group.next_roll = roll - part * step.first;
-        group.next_psi = psi - part * step.second;
+        group.next_roll = roll - larger(smaller(step.first, most), least);
+        group.next_psi = psi - larger(smaller(step.second, most), least);
         group.length = dot(step.end, group.way);
+        group.facing = facing(blank.flank, at.frame, group.way);
         group.is_going = is_going(group);
     }
 
     // 1 where rays neither have met the flank nor are seen to miss it, and can go on, else 0.
     Four is_going(const LaneGroup& group) const {
-        const Four off = group.step.off_squared, no = Four::splat(0.0), yes = Four::splat(1.0);
+        const Four off = group.step.off_squared, level = group.beside.second.y;
+        const Four no = Four::splat(0.0), yes = Four::splat(1.0);
         const Four is_far =
             where_positive(absolute(group.length) - Four::splat(rays.search_radius + SEEN), no, yes);
         const Four size = absolute(group.step.first) + absolute(group.step.second);
-        const Four is_open = where_positive(Four::splat(SEEN * SEEN) - off, is_far, yes);
-        const Four is_apart = where_positive(Four::splat(NEGLIGIBLE * NEGLIGIBLE) - off, no, is_open);
+        const Four is_open = where_positive(Four::splat(SEEN * SEEN) * level - off, is_far, yes);
+        const Four is_apart = where_positive(Four::splat(NEGLIGIBLE * NEGLIGIBLE) * level - off, no, is_open);
         return where_positive(Four::splat(MISSED) - size, is_apart, no);
     }
 
     bool is_seen_to_miss(int k) const {
+        return std::fabs(groups[k / WIDTH].length[k % WIDTH]) > rays.search_radius + SEEN &&
+               is_off_by_less(k, SEEN);
+    }
+
+    // Whether a lane's ray is less than a distance (m) off the point of the flank.
+    bool is_off_by_less(int k, double distance) const {
         const LaneGroup& group = groups[k / WIDTH];
-        const bool is_far = std::fabs(group.length[k % WIDTH]) > rays.search_radius + SEEN;
-        return is_far && group.step.off_squared[k % WIDTH] < SEEN * SEEN;
+        const int at = k % WIDTH;
+        return group.step.off_squared[at] < distance * distance * group.beside.second.y[at];
     }
 
     // Whether a lane's ray is done with: what was found is written. A ray that started where the one before
@@ -220,11 +241,9 @@ class SideBySide {
                      psi = group.psi[at] - group.step.second[at];
         const double place = group.at.place[at] - group.step.second[at] * group.at.place_slope[at];
         // for larger angles the series are no cosine and sine
-        const bool is_small = std::fabs(psi) < 0.5 * std::numbers::pi &&
-                              std::fabs(gear_turn(blank.flank, roll, psi, place)) < SMALL;
-        const bool met = group.step.off_squared[at] < NEGLIGIBLE * NEGLIGIBLE && is_small;
-        const bool hit =
-            met && std::fabs(group.length[at]) < rays.search_radius && faces_the_tooth(group, at);
+        const bool is_small = std::fabs(psi) < STEEP && std::fabs(group.at.turn[at]) < SMALL;
+        const bool met = is_off_by_less(k, NEGLIGIBLE) && is_small;
+        const bool hit = met && group.facing[at] < 0 && std::fabs(group.length[at]) < rays.search_radius;
         if (hit) {
             write(k, roll, psi, place);
         } else {
@@ -241,21 +260,12 @@ class SideBySide {
         return is_done;
     }
 
-    // Whether a lane's ray comes from outside.
-    bool faces_the_tooth(const LaneGroup& group, int at) const {
-        const auto one = [&](const Vector<Four>& all) {
-            return Vector<double>{all.x[at], all.y[at], all.z[at]};
-        };
-        const Frame<Four>& frame = group.at.frame;
-        return facing(blank.flank, {one(frame.point), one(frame.by_first), {}}, one(group.way)) < 0;
-    }
-
     void write(int k, double roll, double psi, double place) {
         const LaneGroup& group = group_of(k);
         const int at = k % WIDTH;
         const Index ray = queues[k].ray;
-        const Vector<Four> points = group.start + group.step.end;
-        const Vector<double> point{points.x[at], points.y[at], points.z[at]};
+        const Vector<Four>&start = group.start, &end = group.step.end;
+        const Vector<double> point{start.x[at] + end.x[at], start.y[at] + end.y[at], start.z[at] + end.z[at]};
         const double radius = radius_of(point);
         hits.continued[ray] = group.length[at];
         if (!on_flank(blank, radius, roll, point.z, place)) return;

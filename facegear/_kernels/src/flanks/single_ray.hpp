@@ -1,6 +1,7 @@
 // A single ray cut with one surface of the face gear: flank, fillet or a land.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,8 +17,6 @@ namespace facegear::flanks {
 constexpr double MISSED = std::numeric_limits<double>::infinity();
 // Rounding (m) by which a point of the flank may stand above the tip.
 constexpr double ON_TIP = 1e-12;
-// Bisections to a start on the fillet, a few degrees from the point.
-constexpr int BISECTIONS = 6;
 // Cosine of a ray with the outward normal of a land that is parallel to it.
 constexpr double PARALLEL = 1e-9;
 // Steps to where a ray meets a land, which is nearly straight, and a length (m) below rounding.
@@ -44,7 +43,7 @@ inline bool within(const Blank& blank, double radius) {
 
 // Whether a point of the flank, continued, lies on the flank itself; `place` is that of its normal's foot.
 inline bool on_flank(const Blank& blank, double radius, double roll, double height, double place) {
-    return within(blank, radius) && roll <= end_roll(blank.flank, place) &&
+    return within(blank, radius) && is_before_end(blank.flank, roll, place) &&
            height <= blank.tip.at(radius) + ON_TIP;
 }
 
@@ -63,8 +62,7 @@ inline FlankHit cut_flank(const Blank& blank, const Ray& ray, double roll, doubl
                 const double radius = radius_of(point), place = at.place - step.second * at.place_slope;
                 roll -= step.first;
                 psi -= step.second;
-                const double length =
-                    on_flank(blank, radius, roll, point.z, place) ? continued : MISSED;
+                const double length = on_flank(blank, radius, roll, point.z, place) ? continued : MISSED;
                 return {{length, roll, psi, radius}, continued, true};
             }
             if (std::fabs(distance) > search_radius + SEEN)
@@ -77,22 +75,22 @@ inline FlankHit cut_flank(const Blank& blank, const Ray& ray, double roll, doubl
     return {{MISSED, roll, psi, UNKNOWN}, MISSED, false};
 }
 
-// Angle of the normal on the fillet near a height, by bisection to a few degrees.
-inline double angle_at_height(const Side& side, double y, double height) {
-    double low = 0.0, high = last_angle(side, y);
-    for (int i = 0; i < BISECTIONS; ++i) {
-        const double angle = 0.5 * (low + high);
-        (TipSection(side, y, angle).point(side.shaper).z > height ? low : high) = angle;
-    }
-    return 0.5 * (low + high);
+// Angle of the normal on the fillet, nearly, at a depth below the tip.
+inline double angle_at_depth(const Side& side, double y, double depth) {
+    const auto& depths = side.guess.fillet;
+    const auto above = std::lower_bound(depths.begin() + 1, depths.end() - 1, depth) - 1;
+    const double part = std::clamp((depth - above[0]) / (above[1] - above[0]), 0.0, 1.0);
+    const double steps = static_cast<double>(above - depths.begin()) + part;
+    return last_angle(side, y) * steps / (FILLET_HEIGHTS - 1);
 }
 
 // The fillet; u is the slope psi of its normal, v the gear radius.
 inline Hit cut_fillet(const Blank& blank, const Ray& ray, double search_radius) {
     const Side& side = blank.flank;
     const Across<double> beside = across(ray.way);
-    double y = tip_place(side.shaper, radius_of(ray.start));
-    double angle = angle_at_height(side, y, ray.start.z);
+    const double start_radius = radius_of(ray.start);
+    double y = tip_place(side.shaper, start_radius);
+    double angle = angle_at_depth(side, y, blank.tip.at(start_radius) - ray.start.z);
     for (int i = 0; i < NEWTON_STEPS; ++i) {
         const FilletPoint at = fillet_point(side, y, angle);
         const auto step = newton_step(ray.start, beside, at.frame);

@@ -47,10 +47,10 @@ struct Turn {
     }
 };
 
-// Terms of the series of sine and cosine about zero, which end below rounding for angles up to a quarter
-// turn, and up to SMALL (rad).
-constexpr int QUARTER_TERMS = 11, SMALL_TERMS = 8;
-constexpr double SMALL = 0.6;
+// Terms of the series of sine and cosine about zero, which end below rounding for angles up to STEEP and
+// SMALL (rad).
+constexpr int STEEP_TERMS = 10, SMALL_TERMS = 7;
+constexpr double STEEP = 1.2, SMALL = 0.4;
 
 template <int Terms>
 inline Turn<double> turn_by(double angle) {
