@@ -13,7 +13,6 @@ from facegear.meshing.law import LinearHeld, LoadDependentHeld
 from facegear.teeth.rays import Blank, Guess, Shaper
 
 
-
 def make_blank():
     """A gear of ones."""
     sides, lines = ("flank", "back"), ("tip", "root", "middle")
