@@ -18,7 +18,7 @@ from facegear.arrays import Array, Integers
 from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
-from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, condense_massless
+from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, keep_slow_modes
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
@@ -45,9 +45,10 @@ class Casing:
         Shafts of pinions by their numbers, for those on several bearings.
     bearing_places : mapping of int to array
         Places of the bearings of these shafts along the pinion's axis from the gears' axis, (bearings,), m.
-    is_condensed : bool
-        Whether motions of the casing without mass are no coordinates: they follow the others statically, as
-        motion in time needs it.
+    frequency_limit : float or None
+        Modes of the casing below the bodies, which stand still, are coordinates up to this frequency, Hz;
+        motions of other modes and without mass follow statically, as motion in time takes them. None: seats
+        and modes of the mounted casing are the coordinates.
     """
 
     layout: Layout
@@ -55,7 +56,7 @@ class Casing:
     bearing_seats: Mapping[int, tuple[str, ...]]
     shafts: Mapping[int, SeatedShaft]
     bearing_places: Mapping[int, Array]
-    is_condensed: bool = False
+    frequency_limit: float | None = None
 
     def __post_init__(self) -> None:
         for names in self.bearing_seats.values():
@@ -214,8 +215,15 @@ class Casing:
         """
         return self.base_motions(len(self.layout.pinions) + gear)[3:]
 
-    def flank_rows(self) -> Array:
-        """Return the derivatives of the flanks' deflections by the casing: gears that tilt with their seats.
+    def flank_rows(self, line: DriveLine | None = None) -> Array:
+        """Return the derivatives of the flanks' deflections by the casing: bodies that tilt with their seats.
+
+        Spur teeth at right angles turn no pinion about a diameter.
+
+        Parameters
+        ----------
+        line : DriveLine or None
+            Drive line, whose shafts let pinions tilt by themselves.
 
         Returns
         -------
@@ -228,6 +236,13 @@ class Casing:
             if g in self.tilting_with_seat:
                 by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
                 rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
+            if (
+                layout.kind is not None
+                and i in self.bearing_seats
+                and (line is None or i not in line.tilting)
+            ):
+                moments = np.array([frame.moment[:2] for frame in layout.flank_frames[g]])
+                rows[:, mesh] += moments @ self.base_motions(i)[3:]
         return rows.reshape(2 * len(layout.meshes), self.size)
 
     def __call__(self, base_model: LinearModel, line: DriveLine | None = None) -> LinearModel:
@@ -265,7 +280,7 @@ class Casing:
             labels=(*base_model.labels, *(f"{CASING}:{letter}" for letter in self.mounted.letters)),
             mass=mass,
             stiffness=0.5 * (stiffness + stiffness.T),
-            rows=np.hstack([base_model.rows, self.flank_rows()]),
+            rows=np.hstack([base_model.rows, self.flank_rows(line)]),
             torques=np.append(base_model.torques, zeros),
             forces=np.append(base_model.forces, zeros),
             lengths=np.append(base_model.lengths, self._lengths()),
@@ -273,7 +288,7 @@ class Casing:
             spin=_pad_spin(base_model.spin, new),
             seat_tilts=self._seat_tilts(old, line),
         )
-        return condense_massless(model) if self.is_condensed else model
+        return model if self.frequency_limit is None else keep_slow_modes(model, self.frequency_limit)
 
     def seat_motion(self, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
         """Return the change of unknowns of a machine on the casing to motions against its seats.
@@ -359,11 +374,11 @@ def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple
         around = layout.angles[body] - first
         cosine, sine = np.cos(around), np.sin(around)
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
-        place = layout.pinion_middle if distance is None else distance
+        along = layout.pinion_middle if distance is None else distance
         if layout.kind is None:
-            return axes, place * axes[2]
+            return axes, along * axes[2]
         axes = layout.kind.lean @ axes
-        return axes, layout.kind.offset * axes[0] + place * axes[2]
+        return axes, layout.kind.offset * axes[0] + along * axes[2]
     cosine, sine = np.cos(first), np.sin(first)
     axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions

@@ -187,7 +187,8 @@ class ShaftSection(Section):
         None,
         ge=1e-12,
         le=1e5,
-        description="of the pinion about a diameter; null: it does not tilt in the dynamics",
+        description="of the pinion about a diameter; null: it does not tilt in the dynamics, or, with teeth "
+        "that are not spur teeth at right angles, half of its inertia about its axis",
     )
     preload: PreloadSection | None = Field(None, description="of two rolling bearings; null: none")
 
