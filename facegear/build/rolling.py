@@ -151,7 +151,8 @@ def _offsets(section: ShaftSection, preload: PreloadSection | None, distance: fl
     """
     offsets = np.zeros((len(section.bearings), MOTIONS))
     for number, bearing in enumerate(section.bearings):
-        offsets[number, :2] = -1e-6 * bearing.position_um.x, -1e-6 * bearing.position_um.y
+        bore = bearing.position_um
+        offsets[number, :3] = -1e-6 * np.array([bore.x, bore.y, bore.z])
     if preload is None:
         return offsets
     pair = [ascii_uppercase.index(letter) for letter in preload.bearings]

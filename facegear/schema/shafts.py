@@ -87,7 +87,7 @@ class ShaftBearing(Section):
         if self.rolling is None and self.position_um != Position():
             requirement = "left out of a bearing without rolling: single_pinions.<name>.position_um moves all"
             refuse("position_um", self.position_um.model_dump(), requirement)
-        for axis in ("x", "y") if self.rolling is not None else ():
+        for axis in "xyz" if self.rolling is not None else ():
             largest, distance = 20.0 * self.rolling.element_diameter_mm, getattr(self.position_um, axis)
             if abs(distance) >= largest:
                 requirement = f"smaller than 0.02 element_diameter_mm, which is {largest:g} um"
