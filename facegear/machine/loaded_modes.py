@@ -19,6 +19,7 @@ from facegear.machine.loaded_contacts import (
 )
 from facegear.machine.machine import Machine
 from facegear.machine.modes import ModeName, Modes, drive_flanks, modes_of
+from facegear.machine.supports import has_rolling_bearings
 
 MOTION_LIMIT = 1.5
 """Highest frequency of the modes of a casing in motion over that of the machine without it.
@@ -138,7 +139,9 @@ def machine_in_motion(machine: Machine) -> Machine:
     NotConverged
         Where its equilibrium is not found.
     """
-    if machine.casing is not None and machine.casing.frequency_limit is None:
+    # Tangents of rolling bearings take the seats themselves as coordinates.
+    by_seats = has_rolling_bearings(machine.drive_line)
+    if machine.casing is not None and machine.casing.frequency_limit is None and not by_seats:
         limit = MOTION_LIMIT * _highest_without_casing(machine)
         machine = replace(machine, casing=replace(machine.casing, frequency_limit=limit))
     bodies = machine.bodies
