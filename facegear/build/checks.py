@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from math import atan, degrees, pi
+from math import atan, cos, degrees, pi, radians
 
 import numpy as np
 
@@ -347,10 +347,11 @@ def _pinion_body(pair: ToothPair) -> tuple[float, float]:
     Without bodies in the config these are what is certain: the pitch radii of pinion and gear.
     """
     if pair.pinion is None:
-        half = 0.5e-3 * pair.module_mm
+        half = 0.5e-3 * pair.module_mm / cos(radians(pair.helix_angle_deg))
         return half * pair.pinion_teeth, half * pair.face_gear_teeth
     design = pair_design(pair)
-    return design.pinion_tip_radius, design.mean_radius - 0.5 * design.pinion.width
+    half = 0.5 * design.pinion.width
+    return design.pinion_tip_radius - half * design.family.taper, design.middle - half
 
 
 LINES = "flanks that touch along lines meet any pose with an edge"

@@ -175,6 +175,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
             yield f"position {letter} {pinion.name}", *_shift_error(machine, "position", (i, k)), 2 * STEP
+        if layout.kind is not None:
+            yield f"position z {pinion.name}", *_shift_error(machine, "outwards", i), 2 * STEP
         if errors.bearing_clearance[i] > STEP:
             yield f"clearance {pinion.name}", *_shift_error(machine, "bearing_clearance", i), 2 * STEP
     for key, names in (
@@ -191,8 +193,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
 def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
     """Return two machines, in which one entry of an error array is smaller, and larger, by STEP (m).
 
-    `key` is a field of Imperfections ("error", "position" or "bearing_clearance"), `index` the entry of
-    its array.
+    `key` is a field of Imperfections ("error", "position", "outwards" or "bearing_clearance"), `index` the
+    entry of its array.
     """
     errors = machine.imperfections
 

@@ -98,7 +98,7 @@ SMALL = {
     "offset": {"offset": 0.1},
     "coast flank": {"coast_pressure_angle": 1.0},
 }
-"""What each kind of teeth changes in a spur pair, per rad of smallness."""
+"""Changes that make each kind of teeth of a spur pair, per rad of smallness; of the offset in m per rad."""
 
 
 @pytest.mark.parametrize("kind", SMALL)

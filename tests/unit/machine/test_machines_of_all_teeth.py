@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from wrench_machines import random_machine
 
 import facegear
 from facegear.errors import FacegearError
+from facegear.sharing.sensitivity import STEP, _changes
 
 KINDS = {
     "helical": {"helix_angle_deg": 15.0},
@@ -74,3 +76,13 @@ def test_a_helical_pinion_set_outwards_has_only_turned_and_a_tapered_one_has_oth
         moved, still = (load_machine(kind, **changes).statics().table()["force_n"] for changes in (place, {}))
         apart = np.abs(moved - still).max()
         assert apart > least if pinion == "right idler" and least else apart < 1e-6 * still.max()
+
+
+def test_sensitivities_name_the_axial_places_of_pinions_with_other_teeth():
+    machine, _ = random_machine(np.random.default_rng([61, 0]))
+    names = [name for name, *_ in _changes(machine)]
+    pinions = [pinion.name for pinion in machine.layout.pinions]
+    assert [name for name in names if name.startswith("position z")] == [f"position z {p}" for p in pinions]
+    low, high = next((low, high) for name, low, high, _ in _changes(machine) if name == "position z p0")
+    moved = high.imperfections.outwards - low.imperfections.outwards
+    assert moved[0] == pytest.approx(2 * STEP) and not moved[1:].any()

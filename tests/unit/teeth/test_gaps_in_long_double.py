@@ -38,8 +38,8 @@ def make_motion(design, phi1, phi2, tooth):
 
 def flank_frame(design, roll, psi):
     """Points of the gear's flank and their derivatives by roll and psi."""
-    numbers = design.shaper_base_radius, design.shaper_ratio, design.shaper_half_space_angle
-    base, ratio, space, lift = map(LONG, (*numbers, design.shaper_lift))
+    base, lift = LONG(design.shaper_base_radius), LONG(design.shaper_lift)
+    ratio, space = LONG(design.shaper_ratio), LONG(design.shaper_half_space_angle)
     angle = ratio * (psi - roll - space)
     c, s, cosine, sine = np.cos(angle), np.sin(angle), np.cos(psi), np.sin(psi)
     p, q = base * (sine - roll * cosine), base / ratio / cosine
