@@ -132,7 +132,8 @@ class ShaftElement:
         arms = self.shaft.arms[:MOTIONS]
         bearing = support.bearing
         length = np.abs(motion * arms).max(axis=1)
-        largest = np.abs(stiffness / np.outer(arms, arms)).max(axis=(1, 2))
+        # The largest entry of a matrix without negative eigenvalues stands on its diagonal.
+        largest = (np.diagonal(stiffness, axis1=1, axis2=2) / arms**2).max(axis=1)
         if not isinstance(bearing, np.ndarray):
             length = np.maximum(length, largest_gap(bearing))
             thrown = bearing.elements * bearing.stiffness_at(bearing.springs.centrifugal)

@@ -7,8 +7,8 @@ import numpy as np
 
 from facegear.errors import ConfigError
 from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.teeth.face_bounds import FaceBounds, face_bounds, path_middles, pitch_line_radius
-from facegear.teeth.limits import THINNEST_LAND, FaceRange, face_range, radius_limits
+from facegear.teeth.limits import FaceRange, face_range, radius_limits
+from facegear.teeth.pitch_line import path_middles
 from facegear.teeth.validate import check_shaper
 
 RANGES = {
@@ -56,7 +56,7 @@ class FaceNumbers:
 
 
 def limits_in_words(numbers: FaceNumbers) -> str:
-    """Describe the limits of the face radii.
+    """Describe both limits of the face radii in one line.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def limits_in_words(numbers: FaceNumbers) -> str:
     Returns
     -------
     str
-        The number of the shaper's teeth, both radii (mm) and what limits them; of teeth that are not spur
-        three more lines: the limit of each flank and the outer one, with the keys that move them away.
+        One line with the number of the shaper's teeth, both radii (mm) and what limits them; of teeth that
+        are not spur also the flank, the limit of the other flank and the keys that help.
 
     Raises
     ------
@@ -76,12 +76,11 @@ def limits_in_words(numbers: FaceNumbers) -> str:
     GeometryError
         For teeth that have no face.
     """
-    radii, shaper = face_limits(numbers), numbers.shaper_teeth or numbers.pinion_teeth + 3
-    head = f"face_gear radii in mm, with a shaper of {shaper} teeth: {radii}"
-    return "\n".join([head, *radii.lines()]) if isinstance(radii, FaceBounds) else head
+    shaper = numbers.shaper_teeth or numbers.pinion_teeth + 3
+    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {face_limits(numbers)}"
 
 
-def face_limits(numbers: FaceNumbers) -> FaceRange | FaceBounds:
+def face_limits(numbers: FaceNumbers) -> FaceRange:
     """Compute the radii between which the face of a face gear may lie.
 
     The rack that cuts the pinion is taken with a sharp tip. The middle of the pinion's face, at which the
@@ -94,8 +93,8 @@ def face_limits(numbers: FaceNumbers) -> FaceRange | FaceBounds:
 
     Returns
     -------
-    FaceRange or FaceBounds
-        Both radii (m) and what limits them; the latter for teeth that are not spur.
+    FaceRange
+        Both radii (m) and what limits them.
 
     Raises
     ------
@@ -105,21 +104,12 @@ def face_limits(numbers: FaceNumbers) -> FaceRange | FaceBounds:
         For teeth that have no face.
     """
     _require_ranges(numbers)
-    m, design = 1e-3 * numbers.module_mm, _design(numbers)
-    if design.is_spur:
-        check_shaper(design)
-        return face_range(design, radius_limits(design))
-    teeth, fewest = design.shaper.teeth, design.pinion.teeth
-    if not fewest <= teeth <= fewest + 3:
-        raise ConfigError("shaper.teeth", teeth, f"from {fewest} (line contact) to {fewest + 3}")
-    middle = float(np.mean(path_middles(design.family)))
-    radius = float(pitch_line_radius(design.family, middle))
-    design_with_face = replace(
-        design,
-        pinion=replace(design.pinion, middle=middle),
-        face_gear=replace(design.face_gear, inner_radius=radius, outer_radius=radius),
-    )
-    return face_bounds(design_with_face.family, THINNEST_LAND * m)
+    design = _design(numbers)
+    if not design.is_spur:
+        middle = float(np.mean(path_middles(design.family)))
+        design = replace(design, pinion=replace(design.pinion, middle=middle))
+    check_shaper(design)
+    return face_range(design, radius_limits(design))
 
 
 def _require_ranges(numbers: FaceNumbers) -> None:

@@ -19,16 +19,10 @@ from facegear.machine.disturbances import Excitation
 from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
 from facegear.machine.layout import Layout
-from facegear.machine.machine import (
-    Damping,
-    FlankTables,
-    Machine,
-    OpenFlanks,
-    balanced_torques,
-    pinion_torques,
-)
+from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
 from facegear.machine.mean_load import rolling_seat
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion
 from facegear.schema.shafts import OUTPUT, ShaftSection, TurningMassSection

@@ -1,4 +1,4 @@
-"""What a machine needs to know of its tooth pair, in SI."""
+"""Numbers of the tooth pair that a machine needs, in SI."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -38,7 +38,7 @@ class PrintedKinematics:
             The layout to check.
         """
         if layout.kind is not None:
-            raise InvalidInput("mesh_kinematics", self.name, f"{GEOMETRIC.name}, {OTHER_TEETH}")
+            raise InvalidInput("transmission.mesh_kinematics", self.name, f"{GEOMETRIC.name}, {OTHER_TEETH}")
 
     def arm(self, radius: float, pressure_angle: float) -> float:
         """Return the torque over the mesh force that balances it: the radius times the cosine of the pressure

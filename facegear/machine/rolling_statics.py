@@ -23,8 +23,10 @@ TOLERANCE = 1e-13
 ROUNDINGS = 8.0
 """Roundings of the largest terms of a sum by which forces may be out of balance at the end."""
 STEPS, STEPS_WITHOUT_GAIN = 120, 8
-"""Newton steps after which a search is given up, and after which it ends where none of them came closer to
-balance: rounding decides there, and the account of all forces afterwards."""
+"""Newton steps after which a search is given up, and after which it ends near balance where none of them came
+closer: rounding decides there, and the account of all forces afterwards."""
+NEARLY = 1e-9
+"""Force out of balance over the largest force, dimensionless, from which on rounding may decide."""
 FIRST_TIE, TIE_FALL, LAST_TIE = 1e-4, 0.03, 1e-11
 """Spring to ground over the stiffest contact, dimensionless: at first, its factor from step to step, and at
 last."""
@@ -287,7 +289,7 @@ def _find_together(problem: RollingProblem, coordinates: Array, inner: Sequence[
         worst = imbalance(problem, states)
         is_closer = worst < 0.5 * least
         least = np.minimum(least, worst)
-        since = np.where(is_closer, 0, since + 1)
+        since = np.where(is_closer | (worst > NEARLY * states.size), 0, since + 1)
         is_open = (worst > TOLERANCE * states.size + states.rounding) & (since < STEPS_WITHOUT_GAIN)
         active = active[is_open[active]]
         if not active.size:

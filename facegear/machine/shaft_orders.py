@@ -211,6 +211,28 @@ class LoadedMachine:
         torque = force * machine.straining_torque(excitation.body)
         return np.asarray(np.linalg.solve(self._dynamic(speed, omega), torque))
 
+    def motion(self, error: ComplexArray, force: ComplexArray, speed: float, omega: float) -> ComplexArray:
+        """Return the complex amplitudes of all coordinates by errors and forces of the flanks.
+
+        Parameters
+        ----------
+        error, force : (2 meshes,) complex array
+            Errors (m), which the flanks' springs and dampers feel, and forces (N) that press the flanks
+            apart.
+        speed : float
+            Speed of the pinions, rad/s.
+        omega : float
+            Angular frequency of the excitation, rad/s.
+
+        Returns
+        -------
+        (n,) complex array
+            m and rad.
+        """
+        flank = self.springs + 1j * omega * np.diag(self.dampers)
+        loads = self.linear.rows.T @ (flank @ error - force)
+        return np.asarray(np.linalg.solve(self._dynamic(speed, omega), loads))
+
     def flank_forces(self, motion: ComplexArray) -> ComplexArray:
         """Return the complex amplitudes of the elastic forces of the flanks that carry load.
 

@@ -13,7 +13,7 @@ from facegear.machine.casing_coordinates import casing_motion
 from facegear.machine.drive_line import DriveLine, TurningMass
 from facegear.machine.machine import Machine
 from facegear.machine.rolling_equilibria import ShaftLoads
-from facegear.machine.statics import Equilibria, bearing_forces
+from facegear.machine.statics import Equilibria, bearing_forces, bearing_loads
 from facegear.parts.shafts import Shaft, deflections
 
 
@@ -98,6 +98,35 @@ def ring_strains(machine: Machine, displacements: Array) -> Array | None:
     return machine.casing.strain_loads(machine.drive_line, casing_motion(machine.linear, displacements))
 
 
+def tilting_moments(machine: Machine, at_rest: Equilibria) -> dict[int, Array]:
+    """Return the moments by which meshes tilt pinions on their shafts.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    at_rest : Equilibria
+        Its equilibria at K positions.
+
+    Returns
+    -------
+    dict of int to (K, 2) array
+        Moments about x and y by the numbers of the pinions that tilt, N m; empty for spur teeth at right
+        angles, which tilt no pinion.
+    """
+    line = machine.drive_line
+    if line is None or machine.layout.kind is None:
+        return {}
+    loads = bearing_loads(machine.linear_without_rolling, at_rest.displacements, at_rest.on_shafts)
+    return {pinion: loads[:, line.tilts(pinion)] for pinion in line.tilting}
+
+
+def _pinion_loads(machine: Machine, at_rest: Equilibria, pinion: int) -> Array:
+    """Return force and moment (5,) of a pinion on its shaft at the first equilibrium, N and N m."""
+    moments = tilting_moments(machine, at_rest).get(pinion, np.zeros((1, 2)))
+    return np.append(bearing_forces(machine, at_rest)[0, pinion], moments[0])
+
+
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
 """Names of the five motions of a shaft at its pinion."""
 STATIONS = 25
@@ -143,11 +172,10 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
         One row a pinion with a shaft: stiffness without moments along x, y, z, N/m, and displacement under
         the mean torques: x_um, y_um, z_um, tilt_x_urad, tilt_y_urad.
     """
-    forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, seat in sorted(line.seats.items()):
         square = 1.0 / np.diagonal(seat.shaft.compliance)[:3]
-        displacement = seat.shaft.compliance[:, :3] @ forces[pinion]
+        displacement = seat.shaft.compliance @ _pinion_loads(machine, at_rest, pinion)
         if pinion in at_rest.shafts:
             displacement = at_rest.shafts[pinion].pinion[0]
         elif machine.casing is not None:
@@ -181,7 +209,6 @@ def deflection_table(
     pd.DataFrame
         Rows along each shaft: pinion, at_mm from its beginning, x_um and y_um.
     """
-    forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, shaft in sorted(shafts.items()):
         at = _stations(shaft)
@@ -189,7 +216,7 @@ def deflection_table(
             loads = at_rest.shafts[pinion]
             displacements = shaft.deflections(loads.pinion[0], loads.forces[0], at)[:, :2]
         else:
-            displacements = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
+            displacements = deflections(shaft, at)[:, :2] @ _pinion_loads(machine, at_rest, pinion)
         name = line.layout.pinions[pinion].name
         rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * displacements]).tolist()]
     return pd.DataFrame(rows, columns=["pinion", "at_mm", "x_um", "y_um"])
@@ -224,10 +251,9 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
     pd.DataFrame
         One row a bearing: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
     """
+    forces, moments = bearing_forces(machine, at_rest), tilting_moments(machine, at_rest)
     strains = ring_strains(machine, at_rest.displacements)
-    loads = shaft_bearing_loads(
-        line, bearing_forces(machine, at_rest), shafts=at_rest.shafts, strains=strains
-    )[0]
+    loads = shaft_bearing_loads(line, forces, moments, at_rest.shafts, strains)[0]
     rows = [
         (line.layout.pinions[pinion].name, letter, *load, np.hypot(*load[:2]))
         for (pinion, letter), load in zip(bearing_names(line), loads, strict=True)

@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.arrays import Array, Integers, Mask
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads, tilting_moments
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium, static_bearing_forces
 from facegear.motion.integrator.reduction import Reduction
@@ -214,10 +214,12 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
-        strains = None
-        if machine.casing is not None:
-            strains = ring_strains(machine_at_rest, mean_equilibrium(machine_at_rest).displacements)
-        static_loads = shaft_bearing_loads(line, static_forces, strains=strains)
+        strains, about = None, None
+        if machine.casing is not None or machine.layout.kind is not None:
+            still = mean_equilibrium(machine_at_rest)
+            strains = ring_strains(machine_at_rest, still.displacements)
+            about = tilting_moments(machine_at_rest, still)
+        static_loads = shaft_bearing_loads(line, static_forces, about, strains=strains)
         static_forces = np.concatenate([static_forces, static_loads[..., :3]], axis=1)
     dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
     statistics = moments(

@@ -111,8 +111,7 @@ def other_teeth_lines(draft: Draft, mesh_torque: float) -> Iterator[str]:
             f"{_text(upward)} N away from the gear"
         )
     yield (
-        "not estimated for teeth that are not spur: gaps beside the contact, load sharing, safety and "
-        "resonances; bearings are stiff"
+        "not estimated for teeth that are not spur: load sharing, safety and resonances; bearings are stiff"
     )
 
 
@@ -124,7 +123,7 @@ def _power_line(draft: Draft) -> str:
     return (
         f"ratio {_text(ratio)}, {_text(power)} kW from {count_noun(wishes.pinions, 'input')}, "
         f"mesh frequency {_text(wishes.pinion_teeth * wishes.speed_rpm / 60)} Hz, "
-        f"contact ratio {draft.teeth.contact_ratio:.3g}"
+        f"contact ratio {draft.teeth.analysis.contact_ratio:.3g}"
     )
 
 
@@ -197,7 +196,7 @@ def estimate_safeties(draft: Draft, mesh_torque: float) -> Safeties:
     Safeties
         Safeties for the endurance limit, and those required, dimensionless.
     """
-    design, ratio = draft.teeth.design, draft.teeth.contact_ratio
+    design, ratio = draft.teeth.design, draft.teeth.analysis.contact_ratio
     request = rating_request(parse(Strength, draft.values_of_config["strength"]), design)
     form = pinion_form(design, ratio)
     permissible = permissible_bending(design, request.bodies["pinion"], form.notch_parameter, 0.0)

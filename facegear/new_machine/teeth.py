@@ -12,13 +12,10 @@ import numpy as np
 from facegear.errors import ConfigError, FacegearError, GeometryError, NotConverged
 from facegear.new_machine.wishes import ToothWishes
 from facegear.teeth.analysis import PairAnalysis, analyse, section_contact_ratio
-from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.teeth.face_bounds import face_bounds, path_middles, pitch_line_radius, pitch_line_y
-from facegear.teeth.family_contact import contact_line
-from facegear.teeth.family_limits import check_family
-from facegear.teeth.limits import THINNEST_LAND, face_range, radius_limits
-from facegear.teeth.tooth_family import SIDES
+from facegear.teeth.limits import face_range, radius_limits
+from facegear.teeth.pitch_line import path_middles, pitch_line_radius, pitch_line_y
+from facegear.teeth.placement import mirror_teeth
 from facegear.teeth.validate import check, check_shaper
 
 HEIGHTS = tuple(1.0 - 0.05 * step for step in range(11))
@@ -58,23 +55,13 @@ MAX_ANALYSES = 40
 """Largest number of teeth whose gaps are computed, 0.2 s each."""
 
 
-OTHER_RACK_TIPS = (0.1,)
-"""Tip radius of the rack, in modules, of teeth whose gaps cannot be computed: with 0.2 the tip of a tapered
-or offset gear cuts up to 50 um into the pinion's root."""
-
-
 @dataclass(frozen=True)
 class ChosenTeeth:
-    """Teeth that mesh freely: the design, the radii (m) that limit its face, and the smaller contact ratio of
-    both flanks.
-
-    analysis: of spur teeth; None of others, whose gaps are not computed yet.
-    """
+    """Teeth that mesh freely: the design, the radii (m) that limit its face, and its analysis."""
 
     design: PairDesign
     face_limits: tuple[float, float]
-    contact_ratio: float
-    analysis: PairAnalysis | None
+    analysis: PairAnalysis
 
 
 @dataclass
@@ -136,8 +123,6 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
         if ratio < CONTACT_RATIO:
             refusals.add("contact ratio")
             continue
-        if not design.is_spur:
-            return ChosenTeeth(design, face_limits, ratio, None)
         analyses += 1
         try:
             analysis = analyse(design, POSITIONS)
@@ -146,7 +131,7 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
             continue
         smallest = (analysis.interference or analysis.smallest).gap
         if smallest >= SMALLEST_GAP * design.module:
-            return ChosenTeeth(design, face_limits, analysis.contact_ratio, analysis)
+            return ChosenTeeth(design, face_limits, analysis)
         refusals.add("gap")
         if analyses == MAX_ANALYSES:
             break
@@ -188,11 +173,9 @@ def _require_numbers(wishes: ToothWishes) -> None:
 
 
 def _contact_ratio(design: PairDesign) -> float:
-    """Return the contact ratio of the flank that has the smaller one; 0 for one without a path of contact."""
-    if design.is_spur:
-        return section_contact_ratio(design)
-    lines = [contact_line(design.family, side) for side in SIDES]
-    return min(0.0 if line is None else contact_path(design.family, line).contact_ratio for line in lines)
+    """Return the contact ratio of the flank that has the smaller one."""
+    pairs = {design, mirror_teeth(design)}
+    return min(section_contact_ratio(pair) for pair in pairs)
 
 
 def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDesign]:
@@ -204,9 +187,8 @@ def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDes
     module = 1e-3 * wishes.module_mm
     thinning = THINNING * module if wishes.thinning_um is None else 1e-6 * wishes.thinning_um
     heights = _one_or(wishes.pinion_addendum_modules, HEIGHTS)
-    rack_tips = RACK_TIPS if is_spur(wishes) else OTHER_RACK_TIPS
     coast = wishes.coast_pressure_angle_deg
-    for height, clearance, rack_tip, lower in product(heights, ROOT_CLEARANCES, rack_tips, LOWER_GEAR_TIPS):
+    for height, clearance, rack_tip, lower in product(heights, ROOT_CLEARANCES, RACK_TIPS, LOWER_GEAR_TIPS):
         dedendum = _given_or(wishes.pinion_dedendum_modules, height + clearance)
         rack_tip = _given_or(wishes.rack_tip_radius_modules, rack_tip)
         shift = _given_or(wishes.profile_shift_modules, _smallest_shift(wishes, dedendum, rack_tip))
@@ -286,60 +268,40 @@ def _smallest_shift(wishes: ToothWishes, dedendum: float, rack_tip: float) -> fl
 
 
 def _place_face(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[float, float]]:
-    """Return the design with its face as near to the pitch radius as the limits allow, and these limits,
+    """Return the design with its face as near to the path of contact as the limits allow, and these limits,
     m.
 
     The face is up to WIDEST modules wide and leaves FREE_ENDS of the allowed range free at either end.
     Radii that the user gave go before. The pinion is a module wider at either end. Raises GeometryError
-    where the teeth cannot exist or less than NARROWEST modules are left.
-    """
-    if not design.is_spur:
-        return _place_other_face(design, wishes)
-    check_shaper(design)
-    limits = face_range(design, radius_limits(design))
-    module, radial_range = design.module, limits.outer - limits.inner
-    _require_face(radial_range, module, str(limits))
-    inner, outer = _face_ends(
-        0.5 * module * design.face_gear.teeth, (limits.inner, limits.outer), module, wishes
-    )
-    design_with_face = replace(
-        design,
-        face_gear=replace(design.face_gear, inner_radius=inner, outer_radius=outer),
-        pinion=replace(design.pinion, width=outer - inner + 2.0 * module),
-    )
-    check(design_with_face)
-    return design_with_face, (limits.inner, limits.outer)
-
-
-def _place_other_face(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[float, float]]:
-    """Return a design that is not spur with its face, and the radii (m) that limit it, as `_place_face` does.
-
-    The face lies about the mean path of both flanks, within the limits of both. The middle of the pinion's
-    face is that of the gear's on the pitch line; tapered teeth have other limits there, so that the face is
+    where the teeth cannot exist or less than NARROWEST modules are left. The middle of a pinion that is not
+    spur is that of the gear's face on the pitch line, which moves the limits of tapered teeth: the face is
     placed again.
     """
     module = design.module
     middle = float(np.mean(path_middles(design.family)))
-    centre = float(pitch_line_radius(design.family, middle))
-    placed_design = _with_face(design, (centre, centre), middle)
-    for _ in range(PLACEMENTS):
-        bounds = face_bounds(placed_design.family, THINNEST_LAND * module, module)
-        _require_face(bounds.outer - bounds.inner, module, str(bounds))
-        ends = _face_ends(centre, (bounds.inner, bounds.outer), module, wishes)
-        middle = float(np.mean(pitch_line_y(placed_design.family, ends)))
-        placed_design = _with_face(design, ends, middle)
-    check_family(placed_design.family)
-    return placed_design, (bounds.inner, bounds.outer)
+    centre = 0.5 * module * design.face_gear.teeth
+    if not design.is_spur:
+        centre = float(pitch_line_radius(design.family, middle))
+        design = replace(design, pinion=replace(design.pinion, middle=middle))
+    check_shaper(design)
+    for _ in range(1 if design.is_spur else PLACEMENTS):
+        limits = face_range(design, radius_limits(design))
+        _require_face(limits.outer - limits.inner, module, str(limits))
+        ends = _face_ends(centre, (limits.inner, limits.outer), module, wishes)
+        design = _with_face(design, ends)
+    check(design)
+    return design, (limits.inner, limits.outer)
 
 
-def _with_face(design: PairDesign, ends: tuple[float, float], middle: float) -> PairDesign:
-    """Return the design with radii (m) of the gear's face and the middle (m) of the pinion's, which is a
-    module wider at either end.
-    """
+def _with_face(design: PairDesign, ends: tuple[float, float]) -> PairDesign:
+    """Return the design with radii (m) of the gear's face; the pinion's is a module wider at either end."""
     gear = replace(design.face_gear, inner_radius=ends[0], outer_radius=ends[1])
-    length = float(np.diff(pitch_line_y(design.family, ends))[0])
-    pinion = replace(design.pinion, width=length + 2.0 * design.module, middle=middle)
-    return replace(design, face_gear=gear, pinion=pinion)
+    if design.is_spur:
+        pinion = replace(design.pinion, width=ends[1] - ends[0] + 2.0 * design.module)
+        return replace(design, face_gear=gear, pinion=pinion)
+    first, last = (float(end) for end in pitch_line_y(design.family, ends))
+    width, middle = last - first + 2.0 * design.module, 0.5 * (first + last)
+    return replace(design, face_gear=gear, pinion=replace(design.pinion, width=width, middle=middle))
 
 
 def _require_face(radial_range: float, module: float, limits_text: str) -> None:

@@ -80,6 +80,24 @@ def casing(case: Case) -> bool:
     return has_casing(case.values["transmission"])
 
 
+def casing_sensors(case: Case) -> bool:
+    """Whether the casing of the machine has sensors.
+
+    They are listed in `transmission.casing.sensors`.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return casing(case) and bool(case.values["transmission"]["casing"]["sensors"])
+
+
 def solid_pair(case: Case) -> Any:
     """Return section tooth_pair where the body of a face gear bends, for stages that take the pair only
     because of that body.

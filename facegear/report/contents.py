@@ -49,6 +49,11 @@ CAPTIONS = {
     "bearings": "Rolling bearings over the machine's torque, that of the config being 1: stiffness along "
     "the radial load, and angle of the circumference that is loaded. Bearings that do the same are drawn "
     "once.",
+    "casing_sharing": "Forces of the meshes at rest on the casing, and on seats that stand still.",
+    "casing_campbell": "Modes of the machine over speed, those of the casing in colour; marks: crossings "
+    "with multiples of the mesh frequency.",
+    "casing_acceleration": "Acceleration of the casing at its sensors over speed, by multiples of the mesh "
+    "frequency.",
     "machine_campbell": "Modes of the whole machine over speed and the waves of its gears; marks: crossings "
     "with mesh harmonics, larger where the phases of the meshes add up.",
     "body_campbell": "Waves of a face gear over speed, hub held; marks: crossings with mesh harmonics, "
@@ -207,6 +212,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Pinions on shafts and bearings and masses behind torsional springs, at rest under the mean torques. "
         "x is tangential to the face gear, y along its axis, z along the shaft.",
         ("shafts", "bearings"),
+    ),
+    (
+        "Casing",
+        "The machine on its casing: forces of the meshes with and without it, modes of both together, and "
+        "what its sensors feel, linear about the mean load.",
+        ("casing_sharing", "casing_campbell", "casing_acceleration"),
     ),
     (
         POSES,

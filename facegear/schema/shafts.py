@@ -83,10 +83,15 @@ class ShaftBearing(Section):
         return self
 
     def _check_position(self) -> None:
-        """Refuse the position of a bore of springs."""
+        """Refuse the position of a bore of springs, and one of 0.02 element diameters or more."""
         if self.rolling is None and self.position_um != Position():
             requirement = "left out of a bearing without rolling: single_pinions.<name>.position_um moves all"
             refuse("position_um", self.position_um.model_dump(), requirement)
+        for axis in "xyz" if self.rolling is not None else ():
+            largest, distance = 20.0 * self.rolling.element_diameter_mm, getattr(self.position_um, axis)
+            if abs(distance) >= largest:
+                requirement = f"smaller than 0.02 element_diameter_mm, which is {largest:g} um"
+                refuse(f"position_um.{axis}", distance, requirement)
 
     def _not_twice(self) -> None:
         """Refuse a bearing with a matrix and single stiffnesses, with rolling and any, or with nothing."""
@@ -182,7 +187,8 @@ class ShaftSection(Section):
         None,
         ge=1e-12,
         le=1e5,
-        description="of the pinion about a diameter; null: it does not tilt in the dynamics",
+        description="of the pinion about a diameter; null: it does not tilt in the dynamics, or, with teeth "
+        "that are not spur teeth at right angles, half of its inertia about its axis",
     )
     preload: PreloadSection | None = Field(None, description="of two rolling bearings; null: none")
 

@@ -12,7 +12,7 @@ from facegear.machine.drive_line import DriveLine
 from facegear.machine.flank_errors import slow_errors
 from facegear.machine.flanks import significant_forces
 from facegear.machine.machine import Machine
-from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads
+from facegear.machine.shaft_tables import bearing_names, ring_strains, shaft_bearing_loads, tilting_moments
 from facegear.machine.statics import Equilibria, bearing_forces, equilibria
 from facegear.sharing.even_shares import even_shares, even_torques, sharing_coefficient
 from facegear.sharing.groups import LoadGroup, load_groups
@@ -411,7 +411,8 @@ def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFr
     if line is not None:
         names += [f"{names[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
         strains = ring_strains(run.machine, run.at_rest.displacements)
-        loads = shaft_bearing_loads(line, forces, shafts=run.at_rest.shafts, strains=strains)
+        tilting = tilting_moments(run.machine, run.at_rest)
+        loads = shaft_bearing_loads(line, forces, tilting, run.at_rest.shafts, strains)
         forces = np.concatenate([forces, loads[..., :3]], axis=1)
     for name, force in zip(names, forces.transpose(1, 0, 2), strict=True):
         radial = np.hypot(force[:, 0], force[:, 1])

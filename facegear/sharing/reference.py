@@ -118,6 +118,7 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
         series={},
         error=np.zeros_like(imperfections.error),
         position=np.zeros_like(imperfections.position),
+        outwards=np.zeros_like(imperfections.outwards),
     )
     silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)), imperfections=quiet)
     tight = replace(silent, half_backlash=np.zeros(len(machine.layout.meshes)))

@@ -13,7 +13,8 @@ from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Kinematics, Layout, Role
-from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.machine import Machine
+from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
 from facegear.ties import size_ranks
@@ -174,6 +175,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
             yield f"position {letter} {pinion.name}", *_shift_error(machine, "position", (i, k)), 2 * STEP
+        if layout.kind is not None:
+            yield f"position z {pinion.name}", *_shift_error(machine, "outwards", i), 2 * STEP
         if errors.bearing_clearance[i] > STEP:
             yield f"clearance {pinion.name}", *_shift_error(machine, "bearing_clearance", i), 2 * STEP
     for key, names in (
@@ -190,8 +193,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
 def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
     """Return two machines, in which one entry of an error array is smaller, and larger, by STEP (m).
 
-    `key` is a field of Imperfections ("error", "position" or "bearing_clearance"), `index` the entry of
-    its array.
+    `key` is a field of Imperfections ("error", "position", "outwards" or "bearing_clearance"), `index` the
+    entry of its array.
     """
     errors = machine.imperfections
 

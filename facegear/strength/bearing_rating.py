@@ -11,7 +11,9 @@ from facegear.bearings.elements import AnyBearing
 from facegear.bearings.equilibrium import BearingState, state_at
 from facegear.bearings.life import BASIS, DutyLife, Lubrication, life_together, rate_duty
 from facegear.bearings.response import element_loads
+from facegear.machine.flanks import NO_LOAD
 from facegear.machine.statics import Equilibria
+from facegear.rigid_body import MOTIONS
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
 """Names of the five motions of an inner ring."""
@@ -84,6 +86,9 @@ class PlacedBearing:
     def state(self, at_rest: Equilibria, position: int = 0) -> BearingState:
         """Return the state of the bearing at an equilibrium of the machine.
 
+        A bearing that carries nothing may stand anywhere in its clearance, also where it just touches: it is
+        taken where it was assembled, if it carries nothing there.
+
         Parameters
         ----------
         at_rest : Equilibria
@@ -96,7 +101,12 @@ class PlacedBearing:
         BearingState
             The state.
         """
-        return state_at(self.bearing, at_rest.shafts[self.pinion].rings[position, self.number])
+        loads, largest = at_rest.shafts[self.pinion], float(at_rest.flank_forces[position].max())
+        if float(np.abs(loads.forces[position, self.number]).max()) <= NO_LOAD * largest:
+            assembled_state = state_at(self.bearing, np.zeros(MOTIONS))
+            if not assembled_state.force.any():
+                return assembled_state
+        return state_at(self.bearing, loads.rings[position, self.number])
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,8 +239,8 @@ def life_table(
 
 def _rate(bearing: PlacedBearing, bins: Sequence[RatedLoad], lubrication: Lubrication | None) -> DutyLife:
     """Return the lives of a bearing over the bins."""
-    rings = np.array([load.at_rest.shafts[bearing.pinion].rings[0, bearing.number] for load in bins])
-    forces = np.array([load.at_rest.shafts[bearing.pinion].forces[0, bearing.number] for load in bins])
+    states = [bearing.state(load.at_rest) for load in bins]
+    rings, forces = np.array([[state.motion, state.force] for state in states]).transpose(1, 0, 2)
     conditions = None
     if lubrication is not None and bearing.fatigue_load_limit is not None:
         conditions = replace(lubrication, fatigue_load_limit=bearing.fatigue_load_limit)

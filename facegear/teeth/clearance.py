@@ -191,6 +191,10 @@ def _set_exact(
     """
     signed_length, nearest = rough
     flank, fillet = (np.flatnonzero(outline.part == PINION_PARTS.index(name)) for name in ("flank", "fillet"))
+    # beside the tip of its own section a point belongs to the flank, wherever the middle section's tip ends
+    angle, tip = np.arctan2(section[..., 0], section[..., 1]), PINION_PARTS.index("tip land")
+    beside = near & (outline.part[nearest] == tip) & (angle > pinion.tip_half_angle(design, section[..., 2]))
+    nearest[beside] = flank[0]
     part, taper = outline.part[nearest], np.cos(design.taper_angle)
     for name, radius in (("tip land", pinion.tip_radius), ("root land", pinion.root_radius)):
         rows = near & (part == PINION_PARTS.index(name))

@@ -11,9 +11,9 @@ import numpy as np
 
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import PairDesign, involute
-from facegear.teeth.face_bounds import FLANK_NAMES
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import family_limits
+from facegear.teeth.family_range import FLANK_NAMES
 from facegear.teeth.generated_fillet import gear_fillet
 from facegear.teeth.helicoid import pinion_start
 from facegear.teeth.tooth_family import SIDES, ToothFamily
@@ -165,6 +165,8 @@ def _path_numbers(family: ToothFamily, side: int) -> dict[str, Any]:
     if line is None:
         return {}
     path = contact_path(family, line)
+    if not path.first < path.last:
+        return {}
     s = np.array([path.first, path.middle, path.last])
     return {
         "path_mm": (1e3 * line.point(s[[0, 2]])).tolist(),

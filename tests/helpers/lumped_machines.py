@@ -5,7 +5,8 @@ import numpy as np
 from facegear.harmonics import Harmonics
 from facegear.machine.kinematics import PRINTED_KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.machine.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
+from facegear.machine.machine import Damping, Machine, OpenFlanks
+from facegear.machine.torques import balanced_torques, pinion_torques
 
 PLACES = (
     ("tail idler", Role.TAIL, 0.0),

@@ -10,8 +10,9 @@ from facegear.harmonics import Harmonics
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.machine.machine import Damping, Machine, balanced_torques
+from facegear.machine.machine import Damping, Machine
 from facegear.machine.mean_load import rolling_seat, with_states
+from facegear.machine.torques import balanced_torques
 from facegear.parts.shafts import Elasticity, Segment
 
 STEEL = Elasticity(206e9, 0.3)

@@ -6,7 +6,8 @@ from facegear.harmonics import Harmonics
 from facegear.machine.casing import Casing
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.machine.machine import Damping, Machine, OpenFlanks, balanced_torques
+from facegear.machine.machine import Damping, Machine, OpenFlanks
+from facegear.machine.torques import balanced_torques
 
 STIFFNESS = 4e8
 """Mesh stiffness, N/m."""

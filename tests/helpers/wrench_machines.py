@@ -15,8 +15,9 @@ from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
-from facegear.machine.machine import Damping, Machine, balanced_torques
+from facegear.machine.machine import Damping, Machine
 from facegear.machine.mesh_frames import ToothKind
+from facegear.machine.torques import balanced_torques
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.teeth.tooth_family import Rack
 

@@ -188,10 +188,10 @@ def test_array_types_have_their_names_from_one_module():
         assert not {f"NDArray[{name}]" for name in named} & parsed(module)[2], module
 
 
-MOST_MODULES, MOST_LINES, LEAST_MEDIAN = 470, 450, 110
+MOST_MODULES, MOST_LINES, LEAST_MEDIAN = 490, 450, 110
 """Limits of the package: modules, lines of the longest one, median of their lines.
 
-Modules were 430 when the rooms were made; 40 more are for bearings, casing and other kinds of teeth.
+Modules were 430 when the rooms were made; 60 more are for bearings, casing and other kinds of teeth.
 """
 
 

@@ -12,7 +12,8 @@ from facegear.harmonics import Harmonics
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.imperfections import perfect
 from facegear.machine.layout import Layout, Role
-from facegear.machine.machine import Machine, OpenFlanks, balanced_torques, mesh_frequency
+from facegear.machine.machine import Machine, OpenFlanks, mesh_frequency
+from facegear.machine.torques import balanced_torques
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.steady_state.simulate import Model, build_model, static_start

@@ -9,7 +9,7 @@ PAIR: Needs = {"tooth_pair": "tooth_pair"}
 TEETH_OF_MACHINE = ComputedValue(
     arguments.teeth_of_machine, (*(f"tooth_pair.{key}" for key in TEETH), "tooth_pair.pinion.middle_mm")
 )
-"""What the machine takes of the tooth pair."""
+"""Values of the tooth pair that the machine takes."""
 MACHINE: Needs = {"transmission": "transmission", "teeth": TEETH_OF_MACHINE}
 """Needs of the machine: its section, and what it takes of the teeth."""
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}

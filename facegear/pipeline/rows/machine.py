@@ -105,15 +105,44 @@ ROWS = (
         module="casing",
         title="Seats, feet, mesh forces and modes of the machine on its casing",
         machine="machine",
-        needs=MACHINE,
+        needs={**MACHINE, "first_rpm": "dynamics.sweep.from_rpm", "last_rpm": "dynamics.sweep.to_rpm"},
         upstream={**HARMONICS, **BODIES},
         files={
             "seats": File("casing/seat_motions.csv", ("x_um", "tilt_x_urad"), text=("seat",)),
             "feet": File("casing/feet.csv", ("x_n", "tilt_x_n_m"), text=("foot",)),
             "sharing": File("casing/load_sharing.csv", ("force_n", "force_on_fixed_seats_n"), text=("mesh",)),
             "modes": File("casing/machine_modes.csv", ("frequency_hz", "casing_energy_fraction")),
+            "campbell": File("casing/campbell.csv", ("line", "speed_rpm", "frequency_hz")),
+            "crossings": File("casing/crossings.csv", ("order", "speed_rpm"), may_be_empty=True),
         },
+        figures=Figures(
+            draw="facegear.report.figures.casing:casing_figures",
+            names=("casing_sharing", "casing_campbell"),
+            chapter="load_sharing",
+            upstream=from_stage("casing_loads", "sharing", "campbell", "crossings"),
+        ),
         condition=machine_conditions.casing,
+        local=True,
+    ),
+    Stage(
+        name="casing_response",
+        module="casing",
+        title="Acceleration of the casing's sensors over speed by orders of the mesh",
+        machine="machine",
+        needs={**MACHINE, "first_rpm": "dynamics.sweep.from_rpm", "last_rpm": "dynamics.sweep.to_rpm"},
+        upstream={**HARMONICS, **BODIES},
+        files={
+            "sensors": File(
+                "casing/sensors.csv", ("speed_rpm", "order", "acceleration_m_per_s2"), text=("sensor",)
+            )
+        },
+        figures=Figures(
+            draw="facegear.report.figures.casing:sensor_figures",
+            names=("casing_acceleration",),
+            chapter="load_sharing",
+            upstream=from_stage("casing_response", "sensors"),
+        ),
+        condition=machine_conditions.casing_sensors,
         local=True,
     ),
     Stage(

@@ -237,9 +237,7 @@ def dynamic_root_stress(
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     contacts_by_mesh = mesh_contacts(forces, contacts, gears, at_pose)
-    table = dynamic_stress_table(
-        forces, positions, pair(tooth_pair).design.pinion_base_radius, contacts_by_mesh
-    )
+    table = dynamic_stress_table(forces, positions, pair(tooth_pair).design.normal_arm, contacts_by_mesh)
     worst = first_largest_row(table, "face_gear_running_mpa")
     summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
     return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")
@@ -305,7 +303,7 @@ def stress_over_speed(
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, inputs.poses)
     by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
     contacts_by_mesh = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
-    radius = pair(tooth_pair).design.pinion_base_radius
+    radius = pair(tooth_pair).design.normal_arm
     table = stress_table(forces, at_standstill, radius, contacts_by_mesh)
     worst = first_largest_row(table, "largest_force_n")
     position = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"

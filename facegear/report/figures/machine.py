@@ -106,7 +106,7 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
     """
     loads = meshes.set_index("mesh")
     forces = None if bearings is None else bearings.set_index("body")
-    max_tangential_force = loads["mean_n"].max() * np.cos(layout.pressure_angle)
+    max_tangential_force = loads["mean_n"].max() * layout.pitch_slope
     largest = (
         max_tangential_force
         if forces is None
@@ -155,8 +155,8 @@ def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | N
         )
         marks.append(Area(corners[:, 0], corners[:, 1], colour=ROLE_COLOUR[pinion.role], opacity=OPACITY))
         row = loads.loc[layout.mesh_names[layout.mesh_index(i, gear.side)]]
-        drives = 1.0 if row["drive_fraction"] >= row["back_fraction"] else -1.0
-        force = gear.sign * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
+        flank = layout.flank_frames[g][0 if row["drive_fraction"] >= row["back_fraction"] else 1]
+        force = row["mean_n"] * flank.gear_normal[0] * along
         marks += _arrow(middle, metres * force, MESH)
         if forces is not None and (gear.side is Side.UPPER or len(layout.gears) == 1):
             inside = (1.0 - 2.5 * HALF_FACE) * radius * outwards

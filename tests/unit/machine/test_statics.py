@@ -12,9 +12,10 @@ from facegear.harmonics import Harmonics
 from facegear.machine.dense_statics import Contacts, Line
 from facegear.machine.imperfections import perfect
 from facegear.machine.layout import Role, Side
-from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.machine import Machine
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 from facegear.machine.statics import static_equilibrium
+from facegear.machine.torques import balanced_torques
 from facegear.meshing.linear import linear_law
 
 

@@ -22,10 +22,11 @@ from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role
 from facegear.machine.loaded_contacts import loaded_contacts
 from facegear.machine.loaded_modes import loaded_modes, machine_in_motion, pressed_springs
-from facegear.machine.machine import FlankTables, balanced_torques
+from facegear.machine.machine import FlankTables
 from facegear.machine.shaft_orders import LoadedMachine, TurnOrders, loaded_machine
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
+from facegear.machine.torques import balanced_torques
 from facegear.machine.turning_modes import machine_at_speeds
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.parts.gear_body import flank_direction, influence

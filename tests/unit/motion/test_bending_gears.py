@@ -15,7 +15,8 @@ from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.flank_errors import error_series
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Tilt
-from facegear.machine.machine import OpenFlanks, balanced_torques
+from facegear.machine.machine import OpenFlanks
+from facegear.machine.torques import balanced_torques
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Settings, State

@@ -15,7 +15,8 @@ from scipy.integrate import solve_ivp
 from facegear.harmonics import Harmonics
 from facegear.machine.layout import Role, Side
 from facegear.machine.linear_model import bearing_diagonal, mass_diagonal
-from facegear.machine.machine import balanced_torques, mesh_frequency
+from facegear.machine.machine import mesh_frequency
+from facegear.machine.torques import balanced_torques
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Motion, Settings, State
 from facegear.motion.steady_state.simulate import build_model, simulate, static_start, steady_state

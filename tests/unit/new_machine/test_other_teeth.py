@@ -10,9 +10,9 @@ from facegear.new_machine.first_machine import first_machine
 from facegear.new_machine.wishes import MachineWishes
 from facegear.schema.yaml_file import read_yaml
 from facegear.teeth.bounded_contact import contact_path
-from facegear.teeth.face_bounds import pitch_line_y
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.family_limits import family_limits
+from facegear.teeth.pitch_line import pitch_line_y
 from facegear.teeth.tooth_family import SIDES
 
 KINDS = (

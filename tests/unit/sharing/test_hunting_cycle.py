@@ -10,7 +10,7 @@ from references import against, agrees
 from facegear.machine.imperfections import Runout, perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role
-from facegear.machine.machine import balanced_torques
+from facegear.machine.torques import balanced_torques
 from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import simulate
 from facegear.sharing import sensitivity

@@ -12,7 +12,7 @@ from references import against, agrees
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Side
-from facegear.machine.machine import balanced_torques
+from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import group_table, hunting_cycle, mesh_table
 
