@@ -331,9 +331,25 @@ def _mesh_key(pair: PairDesign, body: str) -> PairDesign:
     return replace(pair, shaft_angle=RIGHT_ANGLE, offset=0.0) if body == "pinion" else pair
 
 
-def flank_models(
-    design: PairDesign, flanks: Sequence[PairFlanks], gears: Sequence[str] = GEARS
-) -> tuple[list[ContactModel], Integers]:
+def gears_of(design: PairDesign, flanks: Sequence[PairFlanks]) -> Sequence[str]:
+    """Return the gears that flanks are of: `upper` alone where those of another lower gear are missing.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Flanks of the first of `placement.nominal_pairs`.
+
+    Returns
+    -------
+    Sequence[str]
+        Names of the gears.
+    """
+    return GEARS if len(flanks) >= len(nominal_pairs(design)) else GEARS[:1]
+
+
+def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list[ContactModel], Integers]:
     """Build the contact models of all flanks that differ, each on the bodies that it belongs to.
 
     Parameters
@@ -342,8 +358,6 @@ def flank_models(
         Pair of gears.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
         Flanks of `placement.nominal_pairs`, in their order; models of missing ones are left out.
-    gears : Sequence[str]
-        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -351,8 +365,8 @@ def flank_models(
         Models, that of the upper gear's drive flank first, and the number of the model of each gear's
         each flank, (2, 2), as `placement.distinct_pairs` returns it.
     """
-    different, numbers = distinct_pairs(design, gears)
-    bodies = dict(zip(nominal_pairs(design, gears), flanks, strict=False))
+    different, numbers = distinct_pairs(design, gears_of(design, flanks))
+    bodies = dict(zip(nominal_pairs(design), flanks, strict=False))
     pair_bodies = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
     return [contact_model(pair, *flanks) for pair, flanks in pair_bodies if flanks is not None], numbers
 

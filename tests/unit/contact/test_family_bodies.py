@@ -48,7 +48,7 @@ def bodies_of():
 @pytest.mark.parametrize("name", NAMES)
 def test_both_flanks_balance_their_torque_with_the_axial_force_of_their_helicoids(bodies_of, name):
     design = public_pair(name)
-    found = contact_analysis(design, (STEEL, STEEL), bodies_of(name), PLAN, gears=UPPER)
+    found = contact_analysis(design, (STEEL, STEEL), bodies_of(name), PLAN)
     assert len(found.models) == (1 if design.is_symmetric else 2)
     for model, (results, pressure), table in zip(found.models, found.results, found.wrenches, strict=True):
         flank = model.design.family.pinion_flanks[0]
