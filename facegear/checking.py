@@ -8,7 +8,7 @@ from typing import Any
 from facegear.build.cases import expand_cases
 from facegear.build.config import Config
 from facegear.build.early_checks import EarlyFindings, machine_findings, pair_findings
-from facegear.build.kinds_of_teeth import refused_keys
+from facegear.build.kinds_of_teeth import refused_keys, refused_moves
 from facegear.build.notes import notes
 from facegear.pipeline.needs import idle_keys, stages_before
 from facegear.pipeline.stage import Case
@@ -92,12 +92,14 @@ def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, An
     Returns
     -------
     list of str
-        One line for each key, with its value, what is allowed and the first stage that refuses it.
+        One line for each key that the pair has, or that samples or designs move, with its value, what is
+        allowed and the first stage that refuses it.
     """
     case = Case(values, cases)
     wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
     names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])
-    return [str(error) for error in refused_keys(names, values["tooth_pair"]).values()]
+    errors = [*refused_keys(names, values["tooth_pair"]).values(), *refused_moves(names, values)]
+    return [str(error) for error in errors]
 
 
 def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:

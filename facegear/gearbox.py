@@ -99,6 +99,8 @@ class Gearbox(Case):
     gear_waves = machine.gear_waves
     shafts = machine.shafts
     shaft_orders = machine.shaft_orders
+    casing_loads = machine.casing_loads
+    casing_response = machine.casing_response
     operating_pose = machine.operating_pose
 
     response = motion.response

@@ -145,15 +145,15 @@ def sharing_row(words: str, box: Gearbox, torque: float) -> tuple[object, ...]:
     tuple
         Values of COLUMNS.
     """
-    loaded = box.with_values({"transmission.torque.per_input_n_m": torque})
-    groups = loaded.hunting().content["groups"]
+    at_torque = box.with_values({"transmission.torque.per_input_n_m": torque})
+    groups = at_torque.hunting().content["groups"]
     factors = [float(groups.loc[groups["kind"] == kind, "k_gamma"].max()) for kind in ("inputs", "idlers")]
     if words == SPRINGS:
         return (words, torque, 1e-6 * SPRING, 1e-6 * SPRING, *factors, float("nan"))
-    seats = loaded.shafts().table().set_index("pinion")["stiffness_x_n_per_m"]
+    seats = at_torque.shafts().table().set_index("pinion")["stiffness_x_n_per_m"]
     stiffness = [1e-6 * float(seats[name]) for name in ("right input", "right idler")]
     try:
-        life = loaded.bearing_life().table()["l10r_hours"].iloc[-1]
+        life = at_torque.bearing_life().table()["l10r_hours"].iloc[-1]
     except ConfigError:
         life = float("nan")
     return (words, torque, *stiffness, *factors, float(life))
@@ -190,10 +190,10 @@ def page_table(table: pd.DataFrame) -> str:
         "|---|---|---|---|---|---|---|",
     ]
     for row in table.itertuples():
-        life = "" if pd.isna(row.l10r_hours) else f"{row.l10r_hours:.3g}"
+        life = "" if pd.isna(row.l10r_hours) else f"{float(f'{row.l10r_hours:.3g}'):,g}"
         lines.append(
             f"| {row.bearings} | {row.torque_n_m:g} | {row.input_stiffness_n_per_um:.0f} "
-            f"| {row.idler_stiffness_n_per_um:.3g} | {row.k_gamma_inputs:.3f} | {row.k_gamma_idlers:.3f} "
+            f"| {row.idler_stiffness_n_per_um:.0f} | {row.k_gamma_inputs:.3f} | {row.k_gamma_idlers:.3f} "
             f"| {life} |"
         )
     return "\n".join(lines)

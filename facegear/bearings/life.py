@@ -122,9 +122,8 @@ def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
     """
     radial, thrust = np.hypot(force[..., 0], force[..., 1]), np.abs(force[..., 2])
     limit, radial_factor, thrust_factor = _load_factors(bearing, thrust)
-    with_thrust = radial_factor * radial + thrust_factor * thrust
     with np.errstate(invalid="ignore"):  # e is infinite, and a radial load of 0 leaves no number
-        return np.where(thrust <= limit * radial, radial, with_thrust)
+        return np.where(thrust <= limit * radial, radial, radial_factor * radial + thrust_factor * thrust)
 
 
 def _load_factors(bearing: AnyBearing, thrust: Array) -> tuple[Array | float, Array | float, Array | float]:

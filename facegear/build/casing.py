@@ -194,7 +194,9 @@ def machine_casing(section: Transmission, layout: Layout, arrays: Arrays | None)
         bearings = range(len(shaft.bearings))
         names = tuple(_bearing_seat(pinion.name, number, mounted) for number in bearings)
         if any(names):
-            seats[body], shafts[body] = names, follow_rings(stepped_shaft(shaft))
+            seats[body] = names
+            if all(bearing.rolling is None for bearing in shaft.bearings):
+                shafts[body] = follow_rings(stepped_shaft(shaft))
             along = [bearing.at_mm - shaft.pinion_mm for bearing in shaft.bearings]
             positions[body] = layout.pinion_middle + 1e-3 * np.array(along)
     for number, gear in enumerate(layout.gears):

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from math import atan, degrees, pi
+from math import atan, cos, degrees, pi, radians
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.unloaded_contact import gear_backlash, normal_backlash
+from facegear.teeth.unloaded_contact import normal_backlash
 
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -310,9 +310,7 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     """
     assembly, design = pair.assembly.model_dump(), pair_design(pair)
     try:
-        backlash = (
-            normal_backlash(design, tuple(beside)) if design.is_spur else _normal_backlash_of_family(design)
-        )
+        backlash = normal_backlash(design, tuple(beside))
     except NotConverged:
         raise ConfigError(
             "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
@@ -327,15 +325,6 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
             "tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, requirement
         )
     return 1e6 * max(backlash, 0.0)
-
-
-def _normal_backlash_of_family(design: PairDesign) -> float:
-    """Return the backlash (m) of unmodified flanks as assembled, along the drive flank's normal."""
-    arc = gear_backlash(design.family, design.assembly)
-    if arc is None:
-        attempts = "no normal of the gear touches the pinion's base cylinder"
-        raise NotConverged("backlash", "the assembly", attempts)
-    return arc / design.family.gear_pitch_radius * design.gear_normal_arm
 
 
 def memory_here() -> float:
@@ -358,10 +347,11 @@ def _pinion_body(pair: ToothPair) -> tuple[float, float]:
     Without bodies in the config these are what is certain: the pitch radii of pinion and gear.
     """
     if pair.pinion is None:
-        half = 0.5e-3 * pair.module_mm
+        half = 0.5e-3 * pair.module_mm / cos(radians(pair.helix_angle_deg))
         return half * pair.pinion_teeth, half * pair.face_gear_teeth
     design = pair_design(pair)
-    return design.pinion_tip_radius, design.mean_radius - 0.5 * design.pinion.width
+    half = 0.5 * design.pinion.width
+    return design.pinion_tip_radius - half * design.family.taper, design.middle - half
 
 
 LINES = "flanks that touch along lines meet any pose with an edge"

@@ -29,6 +29,7 @@ from facegear.teeth.analysis import (
     summary_in_words,
 )
 from facegear.teeth.design import PairDesign
+from facegear.teeth.pitch_line import path_middles, pitch_line_radius
 
 POSITIONS = 16
 """Positions of a pitch that are looked at; the smallest gap is refined between them."""
@@ -97,12 +98,14 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
             f"tooth_pair: contact ratio {analysis.contact_ratio:.3f}, below 1: tooth pairs do not overlap, "
             "and flanks touch with their edges"
         )
-    gear, path = design.face_gear, 0.5 * design.module * design.face_gear.teeth
-    if not gear.inner_radius <= path <= gear.outer_radius:
-        remarks.append(
-            f"tooth_pair: the path of contact, at gear radius {1e3 * path:.1f} mm, lies beside the face of "
-            f"{1e3 * gear.inner_radius:g} to {1e3 * gear.outer_radius:g} mm: flanks touch at its end"
-        )
+    gear, family = design.face_gear, design.family
+    # of spur teeth both flanks have the same path
+    for path in dict.fromkeys(pitch_line_radius(family, path_middles(family)).tolist()):
+        if not gear.inner_radius <= path <= gear.outer_radius:
+            remarks.append(
+                f"tooth_pair: the path of contact, at gear radius {1e3 * path:.1f} mm, lies beside the face "
+                f"of {1e3 * gear.inner_radius:g} to {1e3 * gear.outer_radius:g} mm: flanks touch at its end"
+            )
     unrated, beyond = _rating(values, design)
     failures, remarks = failures + unrated, remarks + beyond
     return EarlyFindings(tuple(failures), tuple(remarks), (f"geometry: {summary_in_words(analysis)}",))

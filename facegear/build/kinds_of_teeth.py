@@ -27,7 +27,7 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("topography", "compliance"), ALL_KINDS),
+    **dict.fromkeys(("compliance",), ALL_KINDS),
     **dict.fromkeys(("contact", "tooth_errors", "mesh_law", "pose_surface", "displaced_contact"), ALL_KINDS),
     **dict.fromkeys(("root_stress", "posed_stress", "rating"), ALL_KINDS),
     **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
@@ -90,29 +90,41 @@ def require_kind(names: Iterable[str], pair: Mapping[str, Any]) -> None:
         raise error
 
 
-def require_moved_kind(key: str, moved_keys: Iterable[str], stage: str) -> None:
-    """Refuse samples or designs with teeth of a kind that their stage cannot take yet.
+def refused_moves(names: Iterable[str], values: Mapping[str, Any]) -> list[ConfigError]:
+    """Find samples and designs with teeth of a kind that their stage cannot take yet.
 
     Parameters
     ----------
-    key : str
-        Key of the config that names the moved keys.
-    moved_keys : iterable of str
-        Dotted keys of the config that differ from sample to sample, or design to design.
-    stage : str
-        Name of the stage that computes them.
+    names : iterable of str
+        Names of stages.
+    values : mapping
+        Plain values of a whole config.
 
-    Raises
-    ------
-    ConfigError
-        For the first such key.
+    Returns
+    -------
+    list of ConfigError
+        An error, not raised, for each moved key, with the key of the config that names it.
     """
-    kinds = {f"{PAIR}{kind}" for kind in SPUR_ONLY.get(stage, ()) if kind != FLANKS}
-    if FLANKS in SPUR_ONLY.get(stage, ()):
-        kinds |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
-    for moved_key in moved_keys:
-        if moved_key in kinds:
-            raise ConfigError(key, moved_key, f"another key, as stage {stage} cannot take such teeth yet")
+    stages, errors = set(names), []
+    for key, stage, moved_keys in (
+        ("tolerances.causes.moves", "tolerances_chunk", _moved_by(values, "tolerances", "causes", "moves")),
+        ("search.variables.sets", "search_island", _moved_by(values, "search", "variables", "sets")),
+    ):
+        # teeth that vary have a contact of their own, which their stage solves itself
+        kinds = {kind for name in (stage, "compliance", "contact") for kind in SPUR_ONLY.get(name, ())}
+        refused_paths = {f"{PAIR}{kind}" for kind in kinds - {FLANKS}}
+        if FLANKS in kinds:
+            refused_paths |= {f"{PAIR}{FLANKS}.{flank}" for flank in ("drive", "coast")}
+        requirement = f"another key, as stage {stage} cannot take such teeth yet"
+        if stage in stages:
+            errors += [ConfigError(key, path, requirement) for path in moved_keys if path in refused_paths]
+    return errors
+
+
+def _moved_by(values: Mapping[str, Any], section: str, items: str, moves: str) -> list[str]:
+    """Return the dotted keys that a section's items move, each once; none without the section."""
+    section_items = (values[section] or {}).get(items, ())
+    return list(dict.fromkeys(key for item in section_items for key in item[moves]))
 
 
 def _unlike_spur(pair: Mapping[str, Any]) -> dict[str, tuple[Any, str]]:

@@ -143,7 +143,7 @@ def rating_request(
             for (gear, body), turns in zip(sections.items(), (1.0, ratio), strict=True)
         )
     else:
-        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.pinion_base_radius)
+        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.normal_arm)
     return RatingRequest(
         bodies={
             gear: RatedBody(limits_of(body.card), 1e-6 * body.root_roughness_um)

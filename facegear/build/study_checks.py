@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from facegear.build.checks import CONTACT_ASKED, pair_teeth
-from facegear.build.kinds_of_teeth import require_moved_kind
 from facegear.build.machine_layout import layout
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError, ConfigErrors
@@ -101,7 +100,6 @@ def check_tolerances(
         raise ConfigError("lubrication", None, "given, as required by tolerances.causes that move it")
     prefixes = (MACHINE, SPEED, *([LUBRICATION] if lubrication else []), *WITHOUT_MESHING)
     start = movable(_variable(pair, machine, lubrication), keys, prefixes)
-    require_moved_kind("tolerances.causes.moves", keys, "tolerances_chunk")
     if not has_contact and (section.tooth_contact or moves_pair(keys)):
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
     try:
@@ -144,7 +142,6 @@ def check_search(
             "tolerances.causes.moves", oiled, "without lubrication where search asks for percentiles"
         )
     movable(_variable(pair, machine), keys, (MACHINE, PAIR), "search.variables.sets")
-    require_moved_kind("search.variables.sets", keys, "search_island")
     if contact == "none" and moves_pair(keys):
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
     machine_layout = layout(machine, pair_teeth(pair))

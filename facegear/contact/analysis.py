@@ -18,7 +18,6 @@ from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
-from facegear.teeth.placement import GEARS
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -211,7 +210,6 @@ def contact_analysis(
     plan: ContactPlan,
     every_flank: bool = True,
     known_contact: KnownContact | None = None,
-    gears: Sequence[str] = GEARS,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
@@ -224,16 +222,14 @@ def contact_analysis(
     materials : tuple[Material, Material]
         Pinion and face gear.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
-        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`; the first
-        alone without `every_flank`.
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`, or for those
+        of the upper gear; the first alone without `every_flank`.
     plan : ContactPlan
         Torques, positions and options.
     every_flank : bool
         Whether all flanks are solved, not only the upper gear's drive flank.
     known_contact : KnownContact, optional
         Contact of a pair that differs little, with the same nodes and plan.
-    gears : Sequence[str]
-        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -245,7 +241,7 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    models, numbers = flank_models(design, flanks, gears)
+    models, numbers = flank_models(design, flanks)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
     return ContactAnalysis(

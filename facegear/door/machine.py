@@ -1,6 +1,7 @@
 """Answers about the machine at rest: modes, statics, shafts, face gears that bend, poses."""
 
 from facegear.door.case import Case, drop_none
+from facegear.pipeline.results.casing import CasingLoadsResult, CasingResponseResult
 from facegear.pipeline.results.gear_bodies import GearBodiesResult, GearWavesResult
 from facegear.pipeline.results.machine import (
     ModesResult,
@@ -82,6 +83,28 @@ def shafts(self: Case) -> "ShaftsResult":
         The results. Raises ConfigError for a machine without shafts and torsion, NotConverged.
     """
     return self._chain.result(ShaftsResult)
+
+
+def casing_loads(self: Case) -> "CasingLoadsResult":
+    """Compute what the casing does to the machine: mesh forces with and without it, seats, feet and modes.
+
+    Returns
+    -------
+    CasingLoadsResult
+        The results. Raises ConfigError for a machine without casing, NotConverged.
+    """
+    return self._chain.result(CasingLoadsResult)
+
+
+def casing_response(self: Case) -> "CasingResponseResult":
+    """Compute the acceleration of the casing's sensors over speed, linear about the mean load.
+
+    Returns
+    -------
+    CasingResponseResult
+        The results. Raises ConfigError for a machine without sensors on a casing, NotConverged.
+    """
+    return self._chain.result(CasingResponseResult)
 
 
 def shaft_orders(self: Case, speed_rpm: float | None = None) -> "ShaftOrdersResult":

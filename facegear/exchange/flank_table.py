@@ -11,6 +11,7 @@ from facegear.quantities import BODIES, Body
 from facegear.schema.csv_file import HEADER, NOMINAL, SIDES
 from facegear.teeth.design import PairDesign
 from facegear.teeth.modifications import deviation, flank_depth
+from facegear.teeth.placement import mirror_teeth
 from facegear.teeth.surfaces import flank_face, nominal_points
 
 GRID_SHAPE = 11, 9
@@ -50,9 +51,11 @@ def _rows(design: PairDesign, body: Body, side: str) -> pd.DataFrame:
     (face, profile).
     """
     face = flank_face(design, body)
-    deepest = (
-        float(flank_depth(design)(design.face_gear.inner_radius)) if body == "face_gear" else face.profile[1]
-    )
+    deepest = face.profile[1]
+    if body == "face_gear":
+        # both flanks end where the shaper's tip leaves them, helical ones at unequal depths
+        ends = (flank_depth(pair)(design.face_gear.inner_radius) for pair in (design, mirror_teeth(design)))
+        deepest = float(min(ends))
     along, across = (
         low + (high - low) * np.linspace(INSET, 1.0 - INSET, count)
         for (low, high), count in zip((face.face, (face.profile[0], deepest)), GRID_SHAPE, strict=True)

@@ -194,7 +194,7 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
     layout, linear = machine.layout, machine.linear
     stiffness, rows, seat_motions = linear.stiffness, linear.rows, None
     coordinates, scale = _select_unknowns(layout, linear.lengths)
-    if machine.casing is not None and not machine.casing.is_condensed:
+    if machine.casing is not None and machine.casing.frequency_limit is None:
         seat_motions = machine.casing.seat_motion(linear, machine.drive_line)
         stiffness, rows = seat_motions.relative_stiffness(stiffness), seat_motions.along_relative(rows)
         # A mode of the casing takes no load at rest.

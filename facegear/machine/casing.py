@@ -18,13 +18,13 @@ from facegear.arrays import Array, Integers
 from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
-from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, condense_massless
+from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, keep_slow_modes
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.shafts import SeatedShaft
-from facegear.rigid_body import MOTIONS
+from facegear.rigid_body import MOTIONS, carry_motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +42,13 @@ class Casing:
         bearing, one for each bearing of a shaft; empty text for the ground. Bodies that are left out stand
         on the ground.
     shafts : mapping of int to SeatedShaft
-        Shafts of pinions by their numbers, for those on several bearings.
+        Shafts of pinions by their numbers, for those on several bearings given by numbers or matrices.
     bearing_places : mapping of int to array
         Places of the bearings of these shafts along the pinion's axis from the gears' axis, (bearings,), m.
-    is_condensed : bool
-        Whether motions of the casing without mass are no coordinates: they follow the others statically, as
-        motion in time needs it.
+    frequency_limit : float or None
+        Modes of the casing below the bodies, which stand still, are coordinates up to this frequency, Hz;
+        motions of other modes and without mass follow statically, as motion in time takes them. None: seats
+        and modes of the mounted casing are the coordinates.
     """
 
     layout: Layout
@@ -55,7 +56,7 @@ class Casing:
     bearing_seats: Mapping[int, tuple[str, ...]]
     shafts: Mapping[int, SeatedShaft]
     bearing_places: Mapping[int, Array]
-    is_condensed: bool = False
+    frequency_limit: float | None = None
 
     def __post_init__(self) -> None:
         for names in self.bearing_seats.values():
@@ -94,7 +95,7 @@ class Casing:
         """Stiffness (size, size) of shafts that several seats strain with no load on the pinion, SI units."""
         stiffness = np.zeros((self.size, self.size))
         for body, shaft in self.shafts.items():
-            motions = self._ring_motions(body)
+            motions = self.ring_motions(body)
             stiffness += motions.T @ shaft.strain @ motions
         return 0.5 * (stiffness + stiffness.T)
 
@@ -113,12 +114,28 @@ class Casing:
             axis, m and rad for a unit of each coordinate of the casing; zero for a body on the ground.
         """
         if body in self.shafts:
-            return np.asarray(self.shafts[body].motion @ self._ring_motions(body))
+            return np.asarray(self.shafts[body].motion @ self.ring_motions(body))
+        if body in self.bearing_places:
+            # A shaft on rolling bearings: as a rigid shaft best follows its rings.
+            distances = self.bearing_places[body] - self.layout.pinion_middle
+            rigid = np.concatenate([carry_motion(float(distance)) for distance in distances])
+            return np.asarray(np.linalg.lstsq(rigid, self.ring_motions(body))[0])
         names = self.bearing_seats.get(body, ())
         return self._motion_on(names[0], body, None) if names else np.zeros((MOTIONS, self.size))
 
-    def _ring_motions(self, body: int) -> Array:
-        """Return the motions (5 bearings, size) of the outer rings of a pinion's shaft by the casing."""
+    def ring_motions(self, body: int) -> Array:
+        """Return the motions of the outer rings of a pinion's shaft by the casing.
+
+        Parameters
+        ----------
+        body : int
+            Number of the pinion.
+
+        Returns
+        -------
+        (5 bearings, size) array
+            m and rad for a unit of each coordinate of the casing; 0 for bearings on the ground.
+        """
         distances = self.bearing_places[body]
         return np.concatenate(
             [
@@ -165,7 +182,7 @@ class Casing:
         for pinion, seat in sorted(line.seats.items()):
             rings = np.zeros((len(motion), len(seat.shaft.reactions), MOTIONS))
             if pinion in self.shafts:
-                load = motion @ self._ring_motions(pinion).T @ self.shafts[pinion].strain
+                load = motion @ self.ring_motions(pinion).T @ self.shafts[pinion].strain
                 rings = -load.reshape(rings.shape)
             loads.append(rings)
         return np.concatenate(loads, axis=1)
@@ -287,7 +304,7 @@ class Casing:
             spin=_pad_spin(base_model.spin, new),
             seat_tilts=self._seat_tilts(old, line),
         )
-        return condense_massless(model) if self.is_condensed else model
+        return model if self.frequency_limit is None else keep_slow_modes(model, self.frequency_limit)
 
     def seat_motion(self, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
         """Return the change of unknowns of a machine on the casing to motions against its seats.

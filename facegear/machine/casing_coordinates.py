@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import AnyArray, Array, Integers
-from facegear.machine.linear_model import LinearModel, Spin, massive_motions
+from facegear.casing.reduction import own_modes
+from facegear.machine.linear_model import LinearModel, Spin
 
 CASING = "casing"
 """Body of the casing's coordinates in labels: `casing:upper gear x`."""
@@ -122,39 +123,51 @@ def casing_start(linear: LinearModel) -> int:
     return next(n for n, label in enumerate(linear.labels) if label.startswith(f"{CASING}:"))
 
 
-def condense_massless(model: LinearModel) -> LinearModel:
-    """Return a model whose motions without mass are no coordinates any more.
+def keep_slow_modes(model: LinearModel, limit: float) -> LinearModel:
+    """Return a model whose casing has its slow modes as coordinates, while its other motions follow
+    statically.
+
+    The modes are those of the casing on its feet and bearings with all bodies held. Flanks feel no other
+    motion of the casing but through the bodies: gears that tilt with their seats lose what fast modes give.
 
     Parameters
     ----------
     model : LinearModel
-        Linear model with a casing.
+        Linear model with a casing behind all other coordinates.
+    limit : float
+        Highest frequency of the modes, Hz.
 
     Returns
     -------
     LinearModel
-        Coordinates of bodies stay, those of the casing become independent motions with mass; the same model
-        where every motion has mass.
+        Coordinates of bodies stay.
     """
-    motions = massive_motions(model)
-    if motions is None:
-        return model
-    bodies = sum(not label.startswith(f"{CASING}:") for label in model.labels)
+    first = casing_start(model)
+    stiffness, mass = model.stiffness[first:, first:], model.mass[first:, first:]
+    frequencies, shapes = own_modes(stiffness, mass)
+    slow = shapes[:, frequencies <= limit]
+    motions = np.zeros((model.size, first + slow.shape[1]))
+    motions[:first, :first] = np.eye(first)
+    # The casing follows the bodies statically; its slow modes are what it moves beside that.
+    motions[first:, :first] = -np.linalg.solve(stiffness, model.stiffness[first:, :first])
+    motions[first:, first:] = slow
     spin = model.spin
     if spin is not None:
         parts = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
         spin = Spin(*(motions.T @ part @ motions for part in parts))
-    labels = [f"{CASING}:motion {number}" for number in range(1, motions.shape[1] - bodies + 1)]
+    labels = [f"{CASING}:motion {number}" for number in range(1, slow.shape[1] + 1)]
     assert model.seat_tilts is not None
     return replace(
         model,
-        labels=(*model.labels[:bodies], *labels),
+        labels=(*model.labels[:first], *labels),
         mass=motions.T @ model.mass @ motions,
         stiffness=motions.T @ model.stiffness @ motions,
         rows=model.rows @ motions,
         torques=model.torques @ motions,
         forces=model.forces @ motions,
-        lengths=np.abs(model.lengths[:, None] * motions).max(axis=0),
+        lengths=np.append(
+            model.lengths[:first], np.abs(model.lengths[:, None] * motions)[:, first:].max(axis=0)
+        ),
         dampers=motions.T @ model.dampers @ motions,
         spin=spin,
         seat_tilts=model.seat_tilts @ motions,

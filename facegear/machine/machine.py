@@ -174,7 +174,7 @@ class Machine:
     @cached_property
     def linear(self) -> LinearModel:
         """Linear model of the whole machine, the tangents of its rolling bearings included."""
-        return add_tangents(self.linear_without_rolling, self.drive_line)
+        return add_tangents(self.linear_without_rolling, self.drive_line, self.casing)
 
     @cached_property
     def linear_without_rolling(self) -> LinearModel:

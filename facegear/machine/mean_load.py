@@ -7,6 +7,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft, ShaftState, follow_pinion
+from facegear.machine.casing_coordinates import casing_motion
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.flanks import NO_LOAD
@@ -46,19 +47,24 @@ def at_mean_load(machine: Machine) -> Machine:
         assert shaft is not None
         size = max(1.0, float(at.flank_forces.max()), float(np.abs(machine.forces).max()))
         is_loose = float(np.abs(loads.forces).max()) <= NO_LOAD * size
-        states[pinion] = _state(shaft, loads.pinion[0], is_loose)
+        seats = np.zeros((len(shaft.supports), MOTIONS))
+        if machine.casing is not None and any(machine.casing.bearing_seats.get(pinion, ())):
+            rest = machine.casing.without_modes()
+            motion = casing_motion(at_rest(machine).linear, at.displacements[0])
+            seats = (rest.ring_motions(pinion) @ motion).reshape(seats.shape)
+        states[pinion] = _state(shaft, loads.pinion[0], seats, is_loose)
     return with_states(machine, states)
 
 
-def _state(shaft: RollingShaft, pinion: Array, is_loose: bool) -> ShaftState:
-    """Return the state of a shaft where its pinion's middle moves by (5,), m and rad.
+def _state(shaft: RollingShaft, pinion: Array, seats: Array, is_loose: bool) -> ShaftState:
+    """Return the state of a shaft where its pinion's middle moves by (5,), and its seats by (bearings, 5), m
+    and rad.
 
     A shaft that is loose in its clearances may stand anywhere in them, also where it just touches and
     rounding decides its stiffness: it is taken where it was assembled if it carries nothing there.
     """
-    seats = np.zeros((len(shaft.supports), MOTIONS))
     if is_loose:
-        at_assembly = follow_pinion(shaft, np.zeros(MOTIONS), seats)
+        at_assembly = follow_pinion(shaft, np.zeros(MOTIONS), np.zeros_like(seats))
         if not at_assembly.forces.any():
             return at_assembly
     return follow_pinion(shaft, pinion, seats)

@@ -10,6 +10,7 @@ from facegear.arrays import Array
 from facegear.bearings.shaft import ShaftState
 from facegear.bearings.shaft_element import ShaftElement
 from facegear.machine.block_statics import StaticBlocks, has_kernel, settle_all, static_blocks
+from facegear.machine.casing_coordinates import casing_start
 from facegear.machine.dense_statics import Contacts, dense_equilibrium
 from facegear.machine.layout import DOF_PER_BODY
 from facegear.machine.machine import Machine
@@ -87,8 +88,10 @@ def rolling_equilibria(machine: Machine, law: MeshLaw, cycles: Array, gaps: Arra
         m, rad and N; whether forces balance is for the caller to check.
     """
     assert machine.drive_line is not None
-    elements = dict(shaft_elements(machine.drive_line))
-    problem = RollingProblem(machine.linear_without_rolling, law, cycles, gaps, tuple(elements.values()))
+    linear = machine.linear_without_rolling
+    first = 0 if machine.casing is None else casing_start(linear)
+    elements = dict(shaft_elements(machine.drive_line, machine.casing, first))
+    problem = RollingProblem(linear, law, cycles, gaps, tuple(elements.values()))
     states = find_states(problem, *_guess(machine, elements, law, cycles, gaps))
     loads, shafts = np.zeros_like(states.coordinates), {}
     for number, (pinion, element) in enumerate(elements.items()):
@@ -124,6 +127,9 @@ def _guess(
     for pinion, element in elements.items():
         state = line.seats[pinion].state
         assert state is not None
+        if machine.casing is not None:
+            inner.append(np.repeat(element.start(state)[1][None], len(cycles), axis=0))
+            continue
         outer, inner_of_shaft = _follow(element, state, coordinates[:, element.at])
         coordinates[:, element.at] = outer
         inner.append(inner_of_shaft)
@@ -156,6 +162,8 @@ def _blocks(machine: Machine) -> StaticBlocks | None:
     """
     line = machine.drive_line
     assert line is not None
+    if machine.casing is not None:
+        return None
     blocks = static_blocks(replace(machine, drive_line=None))
     if blocks is None:
         return None

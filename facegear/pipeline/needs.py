@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from facegear.build.kinds_of_teeth import require_kind
+from facegear.build.kinds_of_teeth import refused_moves, require_kind
 from facegear.errors import ConfigError
 from facegear.pipeline.stage import Case, ComputedValue, Need, Needs, Values
 from facegear.pipeline.table import STAGES
@@ -96,7 +96,10 @@ def require_teeth(name: str | None, values: Values) -> None:
         With the key of the teeth, its value, what is allowed, and the stages that refuse it.
     """
     if name in STAGES:
-        require_kind(stages_before(name, values)[::-1], values["tooth_pair"])
+        stages = stages_before(name, values)[::-1]
+        require_kind(stages, values["tooth_pair"])
+        for error in refused_moves(stages, values):
+            raise error
 
 
 def stages_before(name: str, values: Values) -> list[str]:

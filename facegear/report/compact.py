@@ -5,7 +5,7 @@ They take their colours from the page (`page.css`), so that one drawing serves l
 
 from collections.abc import Mapping, Sequence
 from html import escape
-from math import ceil, cos, floor, hypot, log10, pi, sin
+from math import ceil, cos, floor, hypot, log10, pi, radians, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,9 +87,9 @@ def machine_picture(values: Mapping[str, Any], meshes: pd.DataFrame | None) -> C
 
 
 def _mesh_radius(values: Mapping[str, Any]) -> float:
-    """Return the nominal radius of the contact path in mm: half of module times teeth of the gear."""
+    """Return the pitch radius of the gear in mm: half of transverse module times teeth."""
     pair = values["tooth_pair"]
-    return 0.5 * float(pair["module_mm"] * pair["face_gear_teeth"])
+    return 0.5 * float(pair["module_mm"] * pair["face_gear_teeth"]) / cos(radians(pair["helix_angle_deg"]))
 
 
 def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | None:

@@ -6,10 +6,20 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.schema.tooth_pair import flank_angles_deg
+
 DATA_SHEET = "Gear data, as on a drawing"
 """Caption of the data sheet."""
 DECIMALS = 3
 """Decimals of lengths in mm: micrometres, as drawings give them."""
+
+KINDS_IN_WORDS = (
+    ("helix_angle_deg", "helix angle", "deg", 0.0),
+    ("taper_angle_deg", "taper angle", "deg", 0.0),
+    ("shaft_angle_deg", "shaft angle", "deg", 90.0),
+    ("offset_mm", "offset", "mm", 0.0),
+)
+"""Keys of the pair that are told where they differ from spur teeth: words, unit, value of spur teeth."""
 
 
 def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
@@ -269,6 +279,28 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
 def _mm(length: float) -> str:
     """Return a length in mm as text with DECIMALS decimals."""
     return f"{length:.{DECIMALS}f}"
+
+
+def teeth_in_words(pair: Mapping[str, Any]) -> str:
+    """Describe the teeth of a config in a sentence.
+
+    Parameters
+    ----------
+    pair : mapping
+        Plain values of section `tooth_pair`.
+
+    Returns
+    -------
+    str
+        Module, pressure angles, and what makes teeth other than spur ones.
+    """
+    drive, coast = flank_angles_deg(pair["pressure_angle_deg"])
+    angles = f"{drive:g} deg" if drive == coast else f"{drive:g} deg on drive, {coast:g} deg on coast flanks"
+    parts = [f"module {pair['module_mm']:g} mm", f"pressure angle {angles}"]
+    for key, words, unit, spur_value in KINDS_IN_WORDS:
+        if pair[key] != spur_value:
+            parts.append(f"{words} {pair[key]:g} {unit}")
+    return ", ".join(parts) + ". "
 
 
 ROUNDING_OF_POWER = 1e-9

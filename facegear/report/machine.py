@@ -6,10 +6,16 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from facegear.number_format import count_noun, format_number
-from facegear.report.data_sheet import DATA_SHEET, ROUNDING_OF_POWER, data_sheet_table, machine_numbers
+from facegear.report.data_sheet import (
+    DATA_SHEET,
+    ROUNDING_OF_POWER,
+    data_sheet_table,
+    has_spur_teeth,
+    machine_numbers,
+    teeth_in_words,
+)
 from facegear.report.page import Chapter, Picture
 from facegear.report.table import Table
-from facegear.schema.tooth_pair import flank_angles_deg
 
 SOURCES = {
     "fem": "computed by finite elements",
@@ -154,6 +160,7 @@ NUMBERS = {
     "backlash_um": ("Backlash along the line of action, smallest", "µm", 4),
     "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 4),
     "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 4),
+    "path_place_mm": ("Middle of the contact path along the pinion's axis, unloaded as assembled", "mm", 4),
     "path_shift_mm": ("Shift of the unloaded contact path, positive outwards", "mm", 3),
 }
 """Key numbers in their order: words, unit, significant digits."""
@@ -271,11 +278,17 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
     path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
     shift = path_radius - nominal
-    return {
+    face_limits = limits["inner_undercut"], limits["outer_pointing"]
+    numbers = {
         "contact_ratio": pair["contact_ratio"],
         "face_width_mm": radii["gear_outer"] - radii["gear_inner"],
-        "face_limits_mm": (limits["inner_undercut"], limits["outer_pointing"]),
+        "face_limits_mm": tuple(limit for limit in face_limits if limit is not None),
         "backlash_um": pair["backlash_um"]["smallest"],
+    }
+    if not has_spur_teeth(pair["design_si"]):
+        # along the pinion's axis, which is no radius of the gear where axes are offset or not square
+        return numbers | {"path_place_mm": path_radius}
+    return numbers | {
         "nominal_path_mm": nominal,
         "unloaded_path_mm": path_radius,
         "path_shift_mm": shift if abs(shift) > 1e-3 else 0.0,
@@ -287,10 +300,7 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
     power balance; for a config without a transmission only the teeth.
     """
     pair, transmission = values["tooth_pair"], values["transmission"]
-    angles = " and ".join(
-        f"{angle:g}" for angle in dict.fromkeys(flank_angles_deg(pair["pressure_angle_deg"]))
-    )
-    teeth = f"module {pair['module_mm']:g} mm, pressure angle {angles} deg. "
+    teeth = teeth_in_words(pair)
     source = SOURCES[values["mesh_stiffness"]["source"]]
     if transmission is None:
         return (

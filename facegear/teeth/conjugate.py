@@ -8,7 +8,7 @@ poses of machines store.
 
 from dataclasses import astuple, dataclass, replace
 from functools import cached_property, lru_cache
-from math import acos, cos, pi, sin, sqrt
+from math import acos, cos, pi, sin
 from typing import Self
 
 import numpy as np
@@ -20,6 +20,7 @@ from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.family_contact import ContactLine, contact_line, find_line, place_line
 from facegear.teeth.flank_shapes import GearModifications
 from facegear.teeth.generated_flank import GearFlank
+from facegear.teeth.pitch_line import pitch_line_y
 from facegear.teeth.tooth_family import Helicoid, RelativeMotion
 
 STEPS = 60
@@ -66,16 +67,8 @@ class PairNumbers:
         PairNumbers
             Numbers in m and rad.
         """
-        half, face, motion = design.pinion.width / 2, design.face_gear, design.family.motion
-        # where the gear's end cylinders pass the pinion's pitch line
-        inner, outer = (
-            (
-                sqrt((radius - design.offset) * (radius + design.offset))
-                + motion.cosine * design.pinion_pitch_radius
-            )
-            / motion.sine
-            for radius in (face.inner_radius, face.outer_radius)
-        )
+        half, face = design.pinion.width / 2, design.face_gear
+        inner, outer = pitch_line_y(design.family, [face.inner_radius, face.outer_radius]).tolist()
         return cls(
             pressure_angle=design.transverse_pressure_angle,
             pinion_teeth=float(design.pinion.teeth),

@@ -309,26 +309,6 @@ class PairDesign:
         return self.family.lift
 
     @cached_property
-    def pitch_plane(self) -> float:
-        """z (m) of the datum plane, where the gear tooth is as thick as its space."""
-        return -self.pinion_pitch_radius - self.pinion.profile_shift
-
-    @cached_property
-    def gear_tip_plane(self) -> float:
-        """Height z of the face gear's tip plane, m."""
-        return self.pitch_plane + self.face_gear.addendum
-
-    @cached_property
-    def gear_root_plane(self) -> float:
-        """Height z of the face gear's root plane, which the shaper's tip generates, m."""
-        return self.shaper_lift - self.shaper_tip_radius
-
-    @cached_property
-    def gear_back_plane(self) -> float:
-        """Height z of the back of the face gear's rim, m."""
-        return self.gear_root_plane - self.face_gear.rim_thickness
-
-    @cached_property
     def gear_base_radius(self) -> float:
         """Base radius (m) of the pinion's drive flank times the ratio; of spur teeth the gear radius at which
         the local pressure angle vanishes.

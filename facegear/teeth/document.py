@@ -13,7 +13,7 @@ from facegear.teeth.clearance import Gap, pinion_outline
 from facegear.teeth.conjugate import PairNumbers
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_numbers import blank_numbers, flank_numbers
-from facegear.teeth.placement import conjugate_angle
+from facegear.teeth.placement import conjugate_angle, mirror_teeth
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
 from facegear.teeth.surfaces import flank_points
@@ -181,7 +181,8 @@ def _gap(gap: Gap) -> dict[str, Any]:
 def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, Array]:
     """Return point grids of the pinion's right flank and fillet and the gear's left ones, in the body frames.
 
-    The gear's are in a mirror x -> -x, see `face_gear`.
+    The gear's are in a mirror x -> -x, see `face_gear`. Coast flanks that are no mirror images follow under
+    names that begin with `coast_`: those of the mirrored teeth.
 
     Parameters
     ----------
@@ -198,6 +199,15 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
         Points, m: `pinion_flank`, `pinion_fillet`, `gear_flank`, `gear_fillet`, and `pinion_section` (n,
         2), the outline of half a tooth in (x, -z), in the middle of the pinion's face.
     """
+    drive = _drive_arrays(design, profile, width)
+    if design.is_symmetric:
+        return drive
+    coast = _drive_arrays(mirror_teeth(design), profile, width)
+    return drive | {f"coast_{name}": array for name, array in coast.items()}
+
+
+def _drive_arrays(design: PairDesign, profile: int, width: int) -> dict[str, Array]:
+    """Return the grids of the drive flanks of `flank_arrays`."""
     half = design.pinion.width / 2
     y = np.linspace(design.middle - half, design.middle + half, width)
     roll = np.linspace(*pinion.roll_ends(design, y)[::-1], num=profile)

@@ -25,27 +25,6 @@ PLACE_SLOPES = (1e-3, 1.4)
 """Slopes (rad) between which normals of sound flanks lie, for the same."""
 
 
-def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
-    """Return the four numbers of the shaper that the kernel of rays takes.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-
-    Returns
-    -------
-    tuple[float, float, float, float]
-        Base radius r_b (m), ratio m2s, half space angle th_os (rad) and lift (m).
-    """
-    return (
-        design.shaper_base_radius,
-        design.shaper_ratio,
-        design.shaper_half_space_angle,
-        design.shaper_lift,
-    )
-
-
 def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Compute points of the right flank in the gear's body frame; roll and slope are broadcast together.
 

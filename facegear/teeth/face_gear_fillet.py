@@ -41,23 +41,6 @@ def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tup
     return np.arctan2(position[..., 0], position[..., 1]), position[..., 2]
 
 
-def tip_numbers(design: PairDesign) -> tuple[float, float, float, float, float]:
-    """Return the numbers of the shaper's tip that the kernels of rays take.
-
-    Parameters
-    ----------
-    design : PairDesign
-        Pair of gears.
-
-    Returns
-    -------
-    tuple[float, float, float, float, float]
-        Radius of the rounding's centre (m), rounding (m), ratio m2s, lift (m) and chi_0 (rad, `edge_start`).
-    """
-    centre, rounding = design.shaper_rounding_centre, design.shaper.tip_rounding
-    return centre, rounding, design.shaper_ratio, design.shaper_lift, edge_start(design)
-
-
 def fillet_start(design: PairDesign, radius: ArrayLike) -> Array:
     """Compute the slope psi where flank and fillet meet.
 

@@ -165,6 +165,8 @@ def _path_numbers(family: ToothFamily, side: int) -> dict[str, Any]:
     if line is None:
         return {}
     path = contact_path(family, line)
+    if not path.first < path.last:
+        return {}
     s = np.array([path.first, path.middle, path.last])
     return {
         "path_mm": (1e3 * line.point(s[[0, 2]])).tolist(),

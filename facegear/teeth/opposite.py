@@ -1,14 +1,15 @@
 """Points of the gear's tooth opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+import scipy
 from scipy.spatial import cKDTree
 
 from facegear.arrays import Array, Integers
 from facegear.teeth import face_gear, face_gear_fillet, pinion
-from facegear.teeth.design import PairDesign
+from facegear.teeth.design import PairDesign, as_cut
 from facegear.teeth.helicoid import pinion_fillet
 from facegear.teeth.placement import to_pinion_section
 from facegear.teeth.rays import FILLET, FLANK, TIP_LAND
@@ -25,6 +26,10 @@ ANGLE_STEP, PLACE_STEP = 1e-5, 1e-6
 """Steps in gamma (rad) and y (m) by which the normal's change is taken, which affect convergence alone."""
 LARGEST_TURN, FARTHEST_TURN = 0.2, 1.0
 """Largest Newton step in gamma (rad), and the farthest a foot may be from the start of its search."""
+
+
+END_POINTS = 65
+"""Points of the end of a tapered gear's flank, as of its tip edge: its spline is within 3e-10 rad."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +141,15 @@ def _last_roll(design: PairDesign, radius: Array) -> Array:
     """Return the roll (rad) at which the gear's flank ends at radii (n,), m; one number without taper."""
     if design.taper_angle == 0.0:
         return np.asarray(design.shaper_tip_roll)
-    return face_gear.end_parameters(design, radius)[0]
+    return _end_roll_by_radius(as_cut(design))(radius)
+
+
+@lru_cache(maxsize=16)
+def _end_roll_by_radius(design: PairDesign) -> "scipy.interpolate.CubicSpline":
+    """Return a spline through END_POINTS exact rolls (rad) of the flank's end over the face (m); cached."""
+    face = design.face_gear
+    radius = np.linspace(face.inner_radius, face.outer_radius, END_POINTS)
+    return scipy.interpolate.CubicSpline(radius, face_gear.end_parameters(design, radius)[0])
 
 
 def tip_edge_feet(
@@ -271,8 +284,8 @@ def _prismatic_feet(
     change = (fillet.gamma[after] - fillet.gamma[before]) / length
     for step in range(STEPS_ON_CIRCLES + 1):
         surface = fillet_points(design, gamma, y)
-        place, normal = (part[:, [0, 2]] * [1.0, -1.0] for part in (surface.position, surface.normal))
-        away, tangent = section[:, :2] - place, normal[:, ::-1] * [1.0, -1.0]
+        curve_point, normal = (part[:, [0, 2]] * [1.0, -1.0] for part in (surface.position, surface.normal))
+        away, tangent = section[:, :2] - curve_point, normal[:, ::-1] * [1.0, -1.0]
         apart = np.sum(away * normal, axis=1)
         if step < STEPS_ON_CIRCLES:
             along = np.sum(away * tangent, axis=1) * np.sign(np.sum(chord * tangent, axis=1))

@@ -196,18 +196,18 @@ def _side(family: ToothFamily, sample: FlankSample) -> Side:
 
 def _guess(family: ToothFamily, sample: FlankSample) -> Guess:
     """Return where searches on a family's right side begin, whose flank is sampled."""
-    x, y, z = np.moveaxis(sample.points, -1, 0)
-    radius, fillet = np.hypot(x, y), gear_fillet(family, RIGHT)
-    center, depth = radius.mean(), family.gear_tip.height(radius) - z
+    points, fillet = sample.points, gear_fillet(family, RIGHT)
+    radius = np.hypot(points[:, 0], points[:, 1])
+    center, depth = radius.mean(), family.gear_tip.height(radius) - points[:, 2]
     along, down = (radius - center) / center, depth / center
     terms = np.stack([np.ones_like(along), along, down, along**2, along * down, down**2], axis=-1)
     powers = np.array([0.0, 1.0, 1.0, 2.0, 2.0, 2.0])
     roll, psi = (np.linalg.lstsq(terms, values)[0] / center**powers for values in (sample.rolls, sample.psis))
-    angle, on_edge = np.arctan2(x, y).reshape(SAMPLES, SAMPLES)[:, 0], terms[::SAMPLES, [0, 1, 3]]
+    angle, on_edge = np.arctan2(points[::SAMPLES, 0], points[::SAMPLES, 1]), terms[::SAMPLES, [0, 1, 3]]
     edge = np.linalg.lstsq(on_edge, angle)[0]
     parts = np.linspace(0.0, 1.0, FILLET_HEIGHTS)
-    place = fillet.y_at(center, parts)
-    heights = fillet.generate(place, parts * fillet.last_angle(place)).position[:, 2]
+    y = fillet.y_at(center, parts)
+    heights = fillet.generate(y, parts * fillet.last_angle(y)).position[:, 2]
     return Guess(
         radius=float(center),
         depth=float(depth.max()),

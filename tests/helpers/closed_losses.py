@@ -16,7 +16,9 @@ def section_loss_factor(design: PairDesign, radius: float) -> float:
     angle = acos(cosine)
     pitch = 2 * pi * design.pinion_base_radius / design.pinion.teeth
     recess = (design.pinion_tip_roll - tan(angle)) * design.pinion_base_radius / pitch
-    approach = (design.gear_tip_plane + ratio * radius) / (sin(angle) * pitch)
+    approach = (design.family.gear_tip.height(design.gear_pitch_radius) + ratio * radius) / (
+        sin(angle) * pitch
+    )
     whole = recess + approach
     factor = 1 - whole + recess**2 + approach**2
     return sqrt(1 + (ratio * cosine) ** 2) * pi / design.pinion.teeth * factor

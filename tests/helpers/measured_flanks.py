@@ -38,7 +38,7 @@ def constant(amount):
 
 def place_on_pinion(design, radius, depth):
     """Face and profile (m) on the pinion that conjugate action brings to places of the gear's flank."""
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, face_gear.tip_height(design, radius) - depth)
     y = design.gear_base_radius / np.cos(psi)
     length = design.shaper_base_radius * roll - design.shaper_lift * np.sin(psi)
     return y - design.mean_radius, length

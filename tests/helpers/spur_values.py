@@ -37,7 +37,7 @@ def shipped_designs() -> dict[str, PairDesign]:
         if section is None or section.pinion is None:
             continue
         design = as_cut(pair_design(section))
-        if design not in designs.values():
+        if design.is_spur and design not in designs.values():
             designs[path.stem] = design
     rounded = next(design for design in designs.values() if design.shaper.tip_rounding > 0.0)
     designs["sharp"] = replace(rounded, shaper=replace(rounded.shaper, tip_rounding=0.0))

@@ -1,4 +1,4 @@
-"""What a shaper leaves of a face gear, by turning it through all angles: no equation of meshing.
+"""A face gear as the shaper leaves it that turns through all angles: no equation of meshing.
 
 The shaper is a rack's envelope (`rolled_rack`) with a cone for its tip and a ball that rounds its edge.
 Points stand in the gear's body frame; `side` is the sign of the flank that cuts them.

@@ -87,7 +87,10 @@ class Gear:
         Layer
             The layer.
         """
-        rim, top = self.rim, self.pair.gear_tip_plane - self.pair.gear_back_plane
+        rim, top = (
+            self.rim,
+            self.pair.face_gear.addendum + self.pair.shaper.addendum + self.pair.face_gear.rim_thickness,
+        )
         return Layer(rim.inner_radius, rim.outer_radius, rim.front, top, density)
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 from facegear.bearings.life import Lubrication
 from facegear.build.machine import MachineInputs, with_torques
 from facegear.build.rolling import placed_bearings, require_loads
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, InvalidInput
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import Equilibria, mean_equilibrium
 from facegear.number_format import count_noun, format_number
@@ -28,7 +28,8 @@ from facegear.strength.bearing_rating import (
 )
 
 FRACTIONS = np.linspace(0.1, 1.5, 15)
-"""Torques over those of the machine at which bearings are followed, dimensionless."""
+"""Torques over those of the machine at which bearings are followed, as far as contact was solved,
+dimensionless."""
 
 
 def bearing_life(inputs: MachineInputs, speed_rpm: float, strength: Strength | None) -> Outcome:
@@ -89,7 +90,12 @@ def bearing_life(inputs: MachineInputs, speed_rpm: float, strength: Strength | N
         scaled_transmission = Transmission.of_config(
             with_torques(inputs.transmission.model_dump(mode="json"), fraction)
         )
-        at = mean_equilibrium(at_rest(replace(inputs, transmission=scaled_transmission).build()))
+        try:
+            at = mean_equilibrium(at_rest(replace(inputs, transmission=scaled_transmission).build()))
+        except (ConfigError, InvalidInput):
+            if fraction <= 1.0:
+                raise
+            break  # beyond the torques of the mesh law or of the poses
         rows += curve_rows(bearings, fraction, fraction * torque, at)
     content = {
         "loads": load_table(bearings, loads),

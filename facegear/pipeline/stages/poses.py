@@ -165,7 +165,7 @@ def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
     exact = contact_at(PairNumbers.of_design(design), posed_contact.errors)
     if exact is not None and without_modifications(design):
         unloaded_error = -exact.transmission_error
-    force = table["torque_n_m"] / design.pinion_base_radius
+    force = table["torque_n_m"] / design.normal_arm
     approach = 1e-6 * table["ste_um"] - unloaded_error
     if not (approach > 0.0).all():
         position = f"offset {1e6 * posed_contact.errors.offset:.4g} um"

@@ -13,7 +13,7 @@ from facegear.build.machine import MachineInputs
 from facegear.build.strength import duty_bins, rating_request
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ContactSetup, ToothPair, contact_setup, pair
-from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of
+from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of, gears_of
 from facegear.errors import ConfigError, FacegearError
 from facegear.machine.flanks import flank_places
 from facegear.machine.static_gears import at_rest
@@ -91,7 +91,9 @@ def root_stress(
     setup = contact_setup(tooth_pair, mesh, contact)
     design, bodies = setup.pair.design, (every_flank_from_arrays(pinion), every_flank_from_arrays(face_gear))
     pairs = list(zip(*bodies, strict=True))
-    of_variants = [flanks_of(variant, design, pairs) for variant in distinct_pairs(design)[0]]
+    of_variants = [
+        flanks_of(variant, design, pairs) for variant in distinct_pairs(design, gears_of(design, pairs))[0]
+    ]
     flanks: list[dict[Body, GearFlank]] = [dict(zip(BODIES, pair, strict=True)) for pair in of_variants]
     roots = {body: passing(body, flank, loads) for body, flank in flanks[0].items()}
     errors = _face_errors(setup, roots)
@@ -235,9 +237,7 @@ def dynamic_root_stress(
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     contacts_by_mesh = mesh_contacts(forces, contacts, gears, at_pose)
-    table = dynamic_stress_table(
-        forces, positions, pair(tooth_pair).design.pinion_base_radius, contacts_by_mesh
-    )
+    table = dynamic_stress_table(forces, positions, pair(tooth_pair).design.normal_arm, contacts_by_mesh)
     worst = first_largest_row(table, "face_gear_running_mpa")
     summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
     return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")
@@ -303,7 +303,7 @@ def stress_over_speed(
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, inputs.poses)
     by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
     contacts_by_mesh = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
-    radius = pair(tooth_pair).design.pinion_base_radius
+    radius = pair(tooth_pair).design.normal_arm
     table = stress_table(forces, at_standstill, radius, contacts_by_mesh)
     worst = first_largest_row(table, "largest_force_n")
     position = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"

@@ -9,9 +9,20 @@ import pandas as pd
 
 from facegear.arrays import Array, Arrays
 from facegear.number_format import format_number
+from facegear.report.data_sheet import has_spur_teeth
 from facegear.report.figures.colours import BLACK, BLUE, RED, channels, grey
 from facegear.report.figures.description import Axis, Figure, Panel, apart
 from facegear.report.figures.marks import Area, Bars, ColourScale, Curve, Levels, LineStyle, Look, Solid, Text
+from facegear.report.figures.tooth_skins import (
+    coast_array,
+    gear_skin,
+    pinion_skin,
+    place_pinion,
+    spur_gear_skin,
+    spur_pinion_skin,
+    turned_gear,
+    turned_pinion,
+)
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
 """Colours of pinion and face gear, as in all drawings of teeth."""
@@ -50,11 +61,16 @@ def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure
     """
     design = record["design_si"]
     pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
-    pinion = np.concatenate([_quads(grid) for grid in _pinion_skin(flanks, design["pinion"]["bore_radius"])])
-    gear = np.concatenate([_quads(grid) for grid in _gear_skin(flanks, gear_teeth)])
+    bore = design["pinion"]["bore_radius"]
+    if has_spur_teeth(design):
+        skins = spur_pinion_skin(flanks, bore), spur_gear_skin(flanks, gear_teeth)
+    else:
+        skins = pinion_skin(flanks, pinion_teeth, bore), gear_skin(flanks, gear_teeth)
+    pinion, gear = (np.concatenate([_quads(grid) for grid in skin]) for skin in skins)
     parts = [
-        _turned_pinion(pinion, (tooth - 0.5) * 2 * pi / pinion_teeth) for tooth in range(pinion_teeth)
-    ] + [_turned_gear(gear, tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
+        place_pinion(turned_pinion(pinion, (tooth - 0.5) * 2 * pi / pinion_teeth), design)
+        for tooth in range(pinion_teeth)
+    ] + [turned_gear(gear, tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
     names = [PINION_COLOUR] * pinion_teeth + [GEAR_COLOUR] * 13
     faces = np.concatenate(parts) * 1e3
     colours = np.concatenate(
@@ -93,42 +109,6 @@ def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Fi
     return Figure(panels, shared_x=False, legend_title="face gear tooth at radius")
 
 
-def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
-    """Return grids (profile, 2, 3), m, of a tooth from space to space: surface, one end down to `bore`."""
-    half = flanks["pinion_section"][::8]
-    section = np.concatenate([half[::-1], half * [-1, 1]])
-    first, last = flanks["pinion_flank"][0, [0, -1], 1]
-    outer = np.insert(section * [1, -1], 1, first, axis=1)
-    inner = np.insert(
-        bore * section / np.linalg.norm(section, axis=1, keepdims=True) * [1, -1], 1, first, axis=1
-    )
-    return [np.stack([outer, outer + [0, last - first, 0]], axis=1), np.stack([outer, inner], axis=1)]
-
-
-def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
-    """Return grids (profile, width, 3), m, of a gear tooth from space to space: surface and inner end."""
-    right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
-    radius = np.hypot(right[0, :, 0], right[0, :, 1])
-    middle = np.stack([radius * np.sin(pi / teeth), radius * np.cos(pi / teeth), right[-1, :, 2]], axis=-1)
-    right = np.concatenate([right, middle[None]])
-    surface = np.concatenate([right[::-1], right * [-1, 1, 1]])
-    below = surface[:, 0].copy()
-    below[:, 2] = 1.15 * surface[..., 2].min()
-    return [surface, np.stack([surface[:, 0], below], axis=1)]
-
-
-def _turned_pinion(points: Array, angle: float) -> Array:
-    """Rotate points (..., 3) about the pinion's axis, y, by an angle (rad) that moves +x towards +z."""
-    c, s = np.cos(angle), np.sin(angle)
-    return points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
-
-
-def _turned_gear(points: Array, angle: float) -> Array:
-    """Rotate points (..., 3) about the gear's axis, z, by an angle (rad) that moves +y towards +x."""
-    c, s = np.cos(angle), np.sin(angle)
-    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T
-
-
 def _quads(grid: Array) -> Array:
     """Return the quadrilaterals (cells, 4, 3), corners in cyclic order, of a grid of points (n, m, 3)."""
     return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
@@ -137,7 +117,7 @@ def _quads(grid: Array) -> Array:
 def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
     """Return the panel of a pinion tooth's section (mm, tip upwards) with arcs and labels of RADII."""
     half = 1e3 * flanks["pinion_section"]
-    tooth = np.concatenate([half[::-1], half * [-1, 1]])
+    tooth = np.concatenate([half[::-1], 1e3 * coast_array(flanks, "pinion_section") * [-1, 1]])
     foot = half[:, 1].min() - 1.5
     body = np.append(tooth[:, 0], [tooth[-1, 0], tooth[0, 0]]), np.append(tooth[:, 1], [foot, foot])
     marks: list[Area | Curve | Text] = [
@@ -173,28 +153,39 @@ def path_text(record: Mapping[str, Any]) -> str:
     """
     path = np.asarray(record["unloaded"]["drive"]["path_pinion_y_mm"], dtype=float)
     nominal = float(record["radii_mm"]["gear_contact_path_nominal"])
+    if not has_spur_teeth(record["design_si"]):
+        first, last = f"{path.min():.3f}", f"{path.max():.3f}"
+        part = f"at {first}" if first == last else f"from {first} to {last}"
+        return f"contact path {part} mm along the pinion"
     text = f"contact path at {path.mean():.3f} mm"
     return text if np.abs(path - nominal).max() < 0.005 else f"{text}, nominal {nominal:.3f} mm"
 
 
 def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
     """Return the panel of a gear tooth's sections at three radii, z over arc length, mm, with limits."""
-    right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
+    left = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
+    coast = coast_array(flanks, "gear_flank"), coast_array(flanks, "gear_fillet")[1:]
+    right = 1e3 * np.concatenate(coast)
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
     styles: tuple[tuple[int, LineStyle], ...] = ((0, "solid"), (width // 2, "dash"), (width - 1, "dot"))
     marks = []
     for column, line in styles:
-        arc = radius[column] * np.arctan2(right[:, column, 0], right[:, column, 1])
-        across = np.concatenate([-arc[::-1], arc])
-        height = np.concatenate([right[::-1, column, 2], right[:, column, 2]])
+        arcs = [radius[column] * np.arctan2(side[:, column, 0], side[:, column, 1]) for side in (left, right)]
+        across = np.concatenate([-arcs[0][::-1], arcs[1]])
+        height = np.concatenate([left[::-1, column, 2], right[:, column, 2]])
         name = f"{format_number(radius[column], 4)} mm"
         marks.append(Curve(across, height, name, GEAR_COLOUR, line))
     limits, radii = record["limits_mm"], record["radii_mm"]
+    cause, pointing = "undercut", limits["outer_pointing"]
+    if not has_spur_teeth(record["design_si"]):
+        flank = max(record["flanks"].values(), key=lambda numbers: numbers["inner_limit_mm"])
+        cause = str(flank["inner_cause"])
     inner, outer = (format_number(radii[f"gear_{end}"], 4) for end in ("inner", "outer"))
+    pointed = f"pointed above {pointing:.3f} mm" if pointing is not None else "not pointed"
     note = (
-        f"undercut below {limits['inner_undercut']:.3f} mm\n"
-        f"face {inner} to {outer} mm, pointed above {limits['outer_pointing']:.3f} mm\n"
+        f"{cause} below {limits['inner_undercut']:.3f} mm\n"
+        f"face {inner} to {outer} mm, {pointed}\n"
         f"{path_text(record)}"
     )
     return Panel(
@@ -243,6 +234,17 @@ def separation(
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     path = 1e3 * contact["path_y"], height[rows, height.shape[1] // 2]
+    if not has_spur_teeth(record["design_si"]):
+        # the path moves along the face, and places along the pinion are no radii: both follow from the map
+        spots = [
+            [
+                np.interp(y, contact["contour_y"][row][on], part[row][on], np.nan, np.nan)
+                for part in (radius, height)
+            ]
+            for row, y in zip(rows, contact["path_y"], strict=True)
+            if (on := is_facing[row]).any()
+        ]
+        path = np.array(spots)[:, 0], np.array(spots)[:, 1]
     marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
     gap_record = record["smallest_gap"]
     title = (

@@ -8,11 +8,12 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, require_moved_kind
+from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves
 from facegear.build.load import config_of
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError, ConfigErrors
+from facegear.errors import ConfigError
+from facegear.pipeline.needs import require_teeth
 from facegear.pipeline.stages.teeth import geometry
 from facegear.pipeline.table import STAGES
 from facegear.schema.base import parse
@@ -137,18 +138,22 @@ def test_the_check_of_a_config_names_the_stages_that_refuse():
 @pytest.mark.parametrize("moved", ["assembly.pinion_axial_um", "helix_angle_deg", "pressure_angle_deg.coast"])
 def test_a_search_may_not_move_teeth_to_a_kind_that_its_stage_refuses(moved, monkeypatch):
     monkeypatch.setitem(SPUR_ONLY, "search_island", ALL_KINDS)
-    with pytest.raises(ConfigError) as refused:
-        require_moved_kind("search.variables.sets", [f"tooth_pair.{moved}"], "search_island")
-    assert str(refused.value).startswith(f"search.variables.sets = 'tooth_pair.{moved}': must be another key")
-    require_moved_kind("search.variables.sets", ["tooth_pair.pressure_angle_deg"], "search_island")
+    sets = ["tooth_pair.pressure_angle_deg", f"tooth_pair.{moved}"]
+    values = {"tolerances": None, "search": {"variables": [{"sets": sets}]}}
+    (error,) = refused_moves(["search_island"], values)
+    assert str(error).startswith(f"search.variables.sets = 'tooth_pair.{moved}': must be another key")
+    assert not refused_moves(["contact"], values)
 
 
 def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
     values = facegear.load("config/microgeometry.yaml").config.model_dump(mode="json")
     cause = values["tolerances"]["causes"][0]
     values["tolerances"]["causes"] = [{**cause, "moves": {"tooth_pair.assembly.pinion_axial_um": 1}}]
+    config = config_of(values)
+    assert config.tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
     monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ALL_KINDS)
-    with pytest.raises(ConfigErrors, match=r"causes\.moves = .*pinion_axial_um.*: must be another key"):
-        config_of(values)
-    monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ())
-    assert config_of(values).tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
+    with pytest.raises(ConfigError, match=r"causes\.moves = .*pinion_axial_um.*: must be another key"):
+        require_teeth("tolerances_chunk", config.model_dump(mode="json"))
+    for name in ("tolerances_chunk", "compliance", "contact"):
+        monkeypatch.setitem(SPUR_ONLY, name, ())
+    require_teeth("tolerances_chunk", config.model_dump(mode="json"))

@@ -67,8 +67,10 @@ def test_statics_and_tangents_agree_with_newtons_method_over_beams(seed):
     assert np.allclose(found.flank_forces[0], flanks, rtol=0, atol=1e-8 * size)
     for pinion, shaft in found.shafts.items():
         assert np.allclose(shaft.forces[0], loads[pinion], rtol=0, atol=1e-8 * size)
-    frequencies = whole.frequencies(coordinates, gaps)
-    assert np.allclose(loaded_modes(machine).frequencies, frequencies, rtol=1e-8, atol=1e-3)
+    frequencies, tangent_frequencies = whole.frequencies(coordinates, gaps), loaded_modes(machine).frequencies
+    is_elastic = frequencies > 1.0
+    assert np.allclose(tangent_frequencies[is_elastic], frequencies[is_elastic], rtol=1e-8, atol=0)
+    assert (tangent_frequencies[~is_elastic] < 1.0).all()
 
 
 PAIR = RollingShaft(

@@ -52,9 +52,11 @@ def test_the_sheet_holds_diameters_face_position_and_backlash(designed):
         name: float(sheet.loc[f"Pinion axis to {name} plane", "face gear"])
         for name in ("pitch", "tip", "root")
     }
-    assert plane["pitch"] == pytest.approx(-1e3 * design.pitch_plane, abs=6e-4)
-    assert plane["tip"] == pytest.approx(-1e3 * design.gear_tip_plane, abs=6e-4)
-    assert plane["root"] == pytest.approx(-1e3 * design.gear_root_plane, abs=6e-4)
+    tip = float(design.family.gear_tip.height(design.mean_radius))
+    root = design.shaper_lift - design.shaper_tip_radius
+    assert plane["pitch"] == pytest.approx(-1e3 * (tip - design.face_gear.addendum), abs=6e-4)
+    assert plane["tip"] == pytest.approx(-1e3 * tip, abs=6e-4)
+    assert plane["root"] == pytest.approx(-1e3 * root, abs=6e-4)
     assert sheet.loc["Backlash along the line of action, as assembled", "unit"] == "µm"
     assert not sheet.isin(["None", "nan", "-0.000"]).any().any()
 

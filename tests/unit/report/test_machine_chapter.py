@@ -1,7 +1,10 @@
 """The chapter on the machine says what an engineer looks for first."""
 
+from dataclasses import asdict
+
 import pandas as pd
 import pytest
+from contact_bodies import pair_design
 
 import facegear
 from facegear.pipeline.needs import stage_needs
@@ -60,6 +63,7 @@ def test_friction_loss_is_taken_off_the_power_out(example):
 
 def test_the_shift_of_the_contact_path_is_a_number():
     pair = {
+        "design_si": asdict(pair_design()),
         "radii_mm": {"gear_inner": 190.0, "gear_outer": 212.0, "gear_contact_path_nominal": 202.0},
         "limits_mm": {"inner_undercut": 188.0, "outer_pointing": 230.0},
         "unloaded": {"drive": {"path_pinion_y_mm": [198.0, 198.2]}},

@@ -97,7 +97,7 @@ def test_rays_end_at_the_measured_flank_to_a_tenth_of_a_micrometre_at_50(pair, f
     radius, depth = (
         part.ravel() for part in np.meshgrid(np.linspace(252, 273, 9) * MM, np.linspace(1, 5, 7) * MM)
     )
-    places = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
+    places = face_gear.roll_and_psi_at_height(design, radius, face_gear.tip_height(design, radius) - depth)
     displaced = modifications.flank_as_made(measured, *places)
     found = seen_from(measured, displaced, face_gear.flank_normal(design, *places), 10 * UM)
     assert (found.part == FLANK).all()

@@ -11,7 +11,7 @@ from facegear.teeth.limits import sharpest_fillet_radius
 
 def flank_grid(design):
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, 9)[:, None]
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    top, _ = face_gear.tip_parameters(design, radius)
     roll = top + np.linspace(0, 1, 12) * (design.shaper_tip_roll - top)
     return radius, roll, face_gear.psi_at(design, radius, roll)
 
@@ -73,7 +73,7 @@ def test_tip_edge_by_radius_is_that_of_the_surface(pair, teeth):
     design = pair(teeth)
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, 1001)
     point, edge = face_gear.tip_edge(design, radius), face_gear.tip_edge_by_radius(design)
-    roll, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll, _ = face_gear.tip_parameters(design, radius)
     np.testing.assert_allclose(edge.roll(radius), roll, rtol=1e-6)
     np.testing.assert_allclose(edge.angle(radius), np.arctan2(point[:, 0], point[:, 1]), rtol=1e-6)
 
@@ -110,7 +110,9 @@ def test_tooth_thickness_on_the_pitch_plane_at_the_pitch_radius(pair, shift):
     """At L = m N2 / 2 the planar tooth is the rack's, pi m / 2 wide on its datum plane whatever the shift."""
     design = pair(shift=shift)
     radius = design.gear_pitch_radius
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.pitch_plane)
+    roll, psi = face_gear.roll_and_psi_at_height(
+        design, radius, face_gear.tip_height(design, radius) - face_gear.pitch_depth(design)
+    )
     width = 2 * face_gear.flank_point(design, roll, psi)[0]
     agrees("tooth thickness, m", width, np.pi * design.module / 2, absolute=5e-3 * design.module)
 
@@ -139,7 +141,7 @@ def test_fillet_ends_tangent_to_the_root_plane(pair, rounding):
     normal = face_gear_fillet.fillet_normal(design, 0.26, np.pi / 2)
     np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-15)
     angle, z = face_gear_fillet.fillet_section(design, 0.26, np.pi / 2)
-    assert z == pytest.approx(design.gear_root_plane, abs=1e-16)
+    assert z == pytest.approx(face_gear_fillet.root_height(design, 0.26), abs=1e-16)
     assert np.pi / 143 - angle == pytest.approx(face_gear_fillet.root_half_angle(design, 0.26), abs=1e-15)
     assert face_gear_fillet.root_half_angle(design, 0.26) > 0
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from family_pairs import public_pair, random_pairs
 from public_teeth import CROWNING_UM, ERRORS, MM, NAMES, crowning, public_numbers
+from scipy.optimize import minimize_scalar
 
 from facegear.teeth import face_gear, face_gear_fillet, pinion
 from facegear.teeth.analysis import REGULAR_CONTACTS
@@ -304,6 +305,36 @@ def test_crowning_of_a_pair_gives_the_motion_of_the_same_removal(pairs, name, er
     found = modified_contact(family, 1, angle, removal, errors)
     expected = modified_contact(family, 1, angle, crowning(family, CROWNING_UM[name]), errors)
     assert np.abs(found.transmission_error - expected.transmission_error).max() < 2e-14
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("errors", "words"), [(AssemblyErrors(), "nominal"), (ERRORS, "with errors")])
+def test_the_crowned_pairs_unloaded_motion_has_the_public_extremes(pairs, name, errors, words):
+    """The closed forms say at which angles; the search of the pair, which knows all edges, says how far."""
+    design = replace(crowned(pairs[name], CROWNING_UM[name]), assembly=errors)
+    family, removal = design.family, crowning(design.family, CROWNING_UM[name])
+    pitch = 2 * np.pi / family.pinion_teeth
+
+    def contact(angle):
+        return modified_contact(family, 1, angle, removal, errors)
+
+    angle = np.linspace(0.0, pitch, 25)
+    error, step = contact(angle).transmission_error, pitch / 24
+    highest = minimize_scalar(
+        lambda at: -contact(at).transmission_error[0],
+        bounds=(angle[np.argmax(error)] - step, angle[np.argmax(error)] + step),
+        method="bounded",
+        options={"xatol": 1e-6},
+    ).x
+    low, high = angle[np.argmin(error)] + np.array([-step, step])
+    before = contact(low).pair[0]
+    for _ in range(36):
+        middle = (low + high) / 2
+        low, high = (middle, high) if contact(middle).pair[0] == before else (low, middle)
+    largest, smallest = unloaded_motion(design, [highest, low])[1] * 1e6
+    expected = public_numbers(name)[f"crowned pinion, drive, {words}: te largest, peak to peak um"]
+    assert abs(largest - expected[0]) < 2e-8
+    assert abs(largest - smallest - expected[1]) < 2e-8
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -7,7 +7,6 @@ Forces of single basis functions move by up to 1e9 N/m with a gap, so that the l
 import numpy as np
 import pytest
 
-from facegear.teeth import face_gear
 from facegear.teeth.placement import AXIS, conjugate_angle, pinion_to_gear
 from facegear.teeth.rays import FLANK
 from facegear.teeth.separation import separation
@@ -39,7 +38,8 @@ def make_motion(design, phi1, phi2, tooth):
 
 def flank_frame(design, roll, psi):
     """Points of the gear's flank and their derivatives by roll and psi."""
-    base, ratio, space, lift = map(LONG, face_gear.shaper_numbers(design))
+    base, lift = LONG(design.shaper_base_radius), LONG(design.shaper_lift)
+    ratio, space = LONG(design.shaper_ratio), LONG(design.shaper_half_space_angle)
     angle = ratio * (psi - roll - space)
     c, s, cosine, sine = np.cos(angle), np.sin(angle), np.cos(psi), np.sin(psi)
     p, q = base * (sine - roll * cosine), base / ratio / cosine

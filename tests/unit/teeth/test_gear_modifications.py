@@ -38,7 +38,9 @@ def flank_grid(design, inset=0.1):
     part = np.linspace(inset, 1 - inset, 9)
     radius = gear.inner_radius + part * (gear.outer_radius - gear.inner_radius)
     depth = part[:, None] * modifications.flank_depth(design)(radius)
-    return face_gear.roll_and_psi_at_height(design, radius[None, :], design.gear_tip_plane - depth)
+    return face_gear.roll_and_psi_at_height(
+        design, radius[None, :], face_gear.tip_height(design, 0.26) - depth
+    )
 
 
 @against(
@@ -53,7 +55,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
     roll, psi = (angle.ravel() for angle in flank_grid(design))
     nominal, normal = face_gear.flank_point(design, roll, psi), face_gear.flank_normal(design, roll, psi)
     radius = np.hypot(nominal[:, 0], nominal[:, 1])
-    taken = modifications.removed_depth(design, radius, design.gear_tip_plane - nominal[:, 2])
+    taken = modifications.removed_depth(design, radius, modifications.depth_below_tip(design, nominal))
     found = seen_from(design, nominal - taken[:, None] * normal, normal, 10 * UM)
     assert (found.part == FLANK).all()
     agrees("gap at 50 um, m", found.gap[0], 10 * UM, absolute=0.1 * UM)

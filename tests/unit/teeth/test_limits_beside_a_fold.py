@@ -47,7 +47,7 @@ def test_many_teeth_have_a_face_although_their_tips_are_pointed_at_tip_undercut(
     assert allowed.inner < m * 2 * teeth < allowed.outer, "the pitch radius has a tooth"
 
     radius = np.linspace(allowed.inner, allowed.outer, 50)
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll, psi = face_gear.tip_parameters(design, radius)
     land = 2 * face_gear.flank_point(design, roll, psi)[..., 0]
     assert land.min() >= THINNEST_LAND * m * (1 - 1e-6)
     if allowed.inner_reason == "tips pointed further in":

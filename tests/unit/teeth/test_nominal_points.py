@@ -1,11 +1,15 @@
 """Nominal points and normals for a measuring machine, in a file that is read back as it is."""
 
 import numpy as np
+import pytest
+from kinds_of_teeth import public_section
+from public_teeth import NAMES
 from references import against, agrees
 
 import facegear
 from facegear.build.tooth_pair import pair_design
 from facegear.teeth import face_gear, pinion
+from facegear.teeth.generated_flank import gear_flank
 
 
 @against(
@@ -33,7 +37,7 @@ def test_nominal_points_lie_on_the_flanks_with_normals_across_them():
             agrees(
                 "gear radius, mm", 1e3 * np.hypot(points[:, 0], points[:, 1]), rows["face_mm"], absolute=1e-9
             )
-            depth = design.gear_tip_plane - points[:, 2]
+            depth = face_gear.tip_height(design, design.mean_radius) - points[:, 2]
             agrees("depth, mm", 1e3 * depth, rows["profile_mm"], absolute=1e-9)
             places = face_gear.roll_and_psi_at_height(design, 1e-3 * rows["face_mm"], points[:, 2])
             tangents = face_gear.flank_tangents(design, *places)
@@ -66,3 +70,21 @@ def test_a_factor_on_deviations_may_vary_in_tolerances_and_search(tmp_path):
     assert add_changes(start, {key: 0.5})["tooth_pair"]["face_gear"]["flanks"]["amplitude"] == 1.5
     key = "tooth_pair.face_gear.modifications.lead_slope_um"
     assert movable({"tooth_pair": values["tooth_pair"]}, [key], WITHOUT_MESHING)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_file_of_every_kind_of_teeth_is_read_back_as_flanks_without_deviations(name, tmp_path):
+    """Points of the left pinion and of the right gear flank were reflections of the opposite ones."""
+    values = {"case": "kind", "tooth_pair": public_section(name)}
+    machine = facegear.load(values, results=None)
+    path = str(machine.export(tmp_path / "nominal_points.csv"))
+    read = machine.with_values({f"tooth_pair.{body}.flanks.file": path for body in ("pinion", "face_gear")})
+    design, table = pair_design(read.config.tooth_pair), machine.topography().table()
+    assert design.pinion.flanks.left.zero and design.face_gear.flanks.right.zero
+    for side, sign in (("left", 1), ("right", -1)):
+        rows = table[(table["body"] == "face_gear") & (table["flank"] == side)]
+        points = 1e-3 * rows[["x_mm", "y_mm", "z_mm"]].to_numpy()
+        flank = gear_flank(design.family, sign)
+        place = flank.parameters_at(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        assert np.abs(flank.point(*place) - points).max() < 1e-9
+        assert np.abs(flank.normal(*place) - rows[["nx", "ny", "nz"]].to_numpy()).max() < 1e-7

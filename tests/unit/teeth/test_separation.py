@@ -85,7 +85,7 @@ def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
     Gear flank point on the instantaneous line of generation, pinion flank point with the same normal.
     """
     design = pair(teeth)
-    _, ratio, space, _ = face_gear.shaper_numbers(design)
+    ratio, space = design.shaper_ratio, design.shaper_half_space_angle
     a = design.pressure_angle
     for gear_radius in np.linspace(0.251, 0.275, 10):
         slope = np.arccos(design.gear_base_radius / gear_radius)
@@ -300,7 +300,7 @@ def test_rays_of_the_fillet_meet_the_tip_land(pair):
     assert set(found.part[0]) <= {0, 1, 3}
     down = SurfacePoints(np.array([[0.0, 0.262, -0.0385]]), np.array([[0.0, 0.0, -1.0]]))
     gap = separation(design, down, np.pi / 23, 0.0).gap
-    assert gap[0, 0] == pytest.approx(-0.0385 - design.gear_tip_plane, abs=1e-15)
+    assert gap[0, 0] == pytest.approx(-0.0385 - face_gear.tip_height(design, 0.26), abs=1e-15)
 
 
 def test_no_gear_beyond_its_ends(pair):
@@ -359,8 +359,8 @@ def test_every_ray_ends_on_the_part_it_names(pair, rounding, inner, outer):
     surfaces = {
         FLANK: lambda u, v: face_gear.flank_point(design, u, v),
         FILLET: lambda u, v: face_gear.cylindrical(v, *face_gear_fillet.fillet_section(design, v, u)),
-        TIP_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_tip_plane)),
-        ROOT_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_root_plane)),
+        TIP_LAND: lambda u, v: face_gear.cylindrical(v, u, face_gear.tip_height(design, v)),
+        ROOT_LAND: lambda u, v: face_gear.cylindrical(v, u, face_gear_fillet.root_height(design, v)),
     }
     for part, surface in surfaces.items():
         hit = found.part == part

@@ -88,7 +88,7 @@ def _flank(design, body):
         y = design.mean_radius + design.pinion.width * np.array([[-0.41, 0.13, 0.37]])
         return flank_points(design, low + 0.3 * share, y).position.reshape(-1, 3)
     radius = np.array([[0.2511, 0.2637, 0.2742]])
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    top, _ = face_gear.tip_parameters(design, radius)
     roll = top + share * (design.shaper_tip_roll - top)
     return face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll)).reshape(-1, 3)
 

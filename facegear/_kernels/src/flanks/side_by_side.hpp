@@ -125,7 +125,9 @@ class SideBySide {
     static void step_from_last(LaneGroup& group) {
         const Vector<Four> way = group.way;
         group.beside = {way.z, -way.x, {-(way.x * way.y), way.x * way.x + way.z * way.z, -(way.y * way.z)}};
-        group.step = newton_step(group.start, group.beside, group.at.frame);
+        const NewtonStep<Four> step = newton_step(group.start, group.beside, group.at.frame);
+        group.step.first = step.first;
+        group.step.second = step.second;
     }
 
     void start(int k) {

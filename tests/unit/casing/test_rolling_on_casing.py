@@ -1,0 +1,126 @@
+"""The small machine with its input on rolling bearings, on fixed seats and on the public casing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.bearings.life import reference_life
+from facegear.bearings.response import element_loads
+from facegear.bearings.shaft import RollingShaft, Support, find_shaft_equilibrium
+from facegear.machine.casing import Casing
+from facegear.machine.casing_tables import foot_table
+from facegear.machine.drive_line import DriveLine
+from facegear.machine.layout import Body
+from facegear.machine.loaded_modes import loaded_modes
+from facegear.machine.machine import Damping, OpenFlanks
+from facegear.machine.mean_load import at_mean_load, rolling_seat
+from facegear.machine.statics import equilibria, mean_equilibrium
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.parts.shafts import Elasticity, Segment
+from tests.helpers.public_casing import mount_public
+from tests.helpers.rolling_bearings import P1, P3
+from tests.helpers.seated_machines import make_small_layout, make_small_machine, place_on
+
+SEGMENTS = (Segment(0.04, 0.05, 0.02), Segment(0.05, 0.06, 0.02), Segment(0.04, 0.05, 0.02))
+SHAFT = RollingShaft(
+    SEGMENTS,
+    Elasticity(206e9, 0.3),
+    (Support(0.01, P1, np.zeros(5)), Support(0.12, P3, np.zeros(5))),
+    0.06,
+)
+FORCES = {
+    "fixed": (10_424.510, 4612.010, 5812.501, 26_354.754),
+    "casing": (11_687.282, 5158.265, 6529.017, 25_091.982),
+}
+BEARINGS = {
+    "fixed": ((-7858.977, -3663.779, 0.0), (-6578.727, -3068.632, 0.0)),
+    "casing": ((-6614.261, -3083.612, 0.0), (-5534.523, -2581.460, 0.0)),
+}
+MODES = {
+    "fixed": (0, 621.301, 1266.245, 1452.879, 1452.879, 1520.109, 1556.023),
+    "casing": (0, 566.256, 748.764, 790.878, 808.616, 845.897, 885.903),
+}
+LIVES = {"fixed": (61.8026, 3957.77), "casing": (102.872, 6769.38)}
+
+
+def make_machine(seat, names=("p0", "p0"), factor=1.0):
+    layout = make_small_layout()
+    state = find_shaft_equilibrium(SHAFT, np.array([-14e3, -7e3, 0.0, 0.0, 0.0]))
+    body = Body(1.2, 6e-4, (3e8, 3e8, 1e8))
+    layout = replace(layout, pinions=(replace(layout.pinions[0], body=body), *layout.pinions[1:]))
+    line = DriveLine(layout, {0: rolling_seat(SHAFT, state, None)}, {})
+    casing = None
+    if seat == "casing":
+        simple = place_on(mount_public(0, factor), layout)
+        along = layout.mesh_radius + np.array([0.01, 0.12]) - SHAFT.pinion
+        seats = {**simple.bearing_seats, 0: names}
+        casing = Casing(layout, simple.mounted, seats, {}, {0: along})
+    return at_mean_load(make_small_machine(layout, casing, drive_line=line))
+
+
+@pytest.fixture(scope="module")
+def machines():
+    return {seat: make_machine(seat) for seat in FORCES}
+
+
+@pytest.mark.parametrize("seat", list(FORCES))
+def test_published_mesh_forces(machines, seat):
+    forces = np.abs(mean_equilibrium(machines[seat]).forces[0])
+    np.testing.assert_allclose(forces[:4], FORCES[seat], atol=2e-3)
+
+
+@pytest.mark.parametrize("seat", list(FORCES))
+def test_published_loads_and_lives_of_the_bearings(machines, seat):
+    shaft = mean_equilibrium(machines[seat]).shafts[0]
+    np.testing.assert_allclose(shaft.forces[0, :, :3], BEARINGS[seat], atol=2e-3)
+    for bearing, motion, life in zip((P1, P3), shaft.rings[0], LIVES[seat], strict=True):
+        loads = element_loads(bearing, motion[None])
+        assert float(reference_life(bearing, loads)[0]) == pytest.approx(life, rel=5e-6)
+
+
+@pytest.mark.parametrize("seat", list(FORCES))
+def test_published_tangent_modes(machines, seat):
+    frequencies = loaded_modes(machines[seat]).frequencies[:7]
+    np.testing.assert_allclose(frequencies, MODES[seat], atol=2e-3)
+
+
+def test_the_base_carries_the_torques(machines):
+    machine = machines["casing"]
+    motion = mean_equilibrium(machine).displacements[0]
+    on_base = machine.casing.mounted.foot_loads @ motion[-machine.casing.size :]
+    np.testing.assert_allclose(on_base, [0, 0, 0, -1000, 0, -3000], atol=1e-5)
+
+
+def test_tangents_stand_at_the_equilibrium_itself(machines):
+    """At the mean load the linear model has the balance of the rolling bearings."""
+    machine = machines["casing"]
+    at = mean_equilibrium(machine)
+    linear = machine.linear
+    left_over = at.displacements[0] @ linear.stiffness + at.flank_forces[0] @ linear.rows - linear.loads
+    np.testing.assert_allclose(left_over / linear.lengths, 0.0, atol=1e-4)
+
+
+def test_a_stiff_casing_is_the_machine_on_fixed_seats():
+    fixed = mean_equilibrium(make_machine("fixed")).forces
+    stiff = mean_equilibrium(make_machine("casing", factor=1e6)).forces
+    np.testing.assert_allclose(stiff, fixed, rtol=1e-5)
+
+
+def test_one_bearing_on_the_casing_and_one_on_the_ground():
+    machine = make_machine("casing", names=("p0", ""))
+    assert equilibria(machine, np.linspace(0.0, 1.0, 3)).residual.max() < 1e-10
+    feet = foot_table(machine, mean_equilibrium(machine)).set_index("foot")
+    assert np.abs(feet.loc["ground"].astype(float)).max() > 1000.0
+    np.testing.assert_allclose(feet.loc["out of balance"].astype(float), 0.0, atol=1e-5)
+
+
+def test_motion_of_rolling_bearings_on_the_casing_settles(machines):
+    model = build_model(
+        replace(machines["casing"], damping=Damping(2000.0, 0.0, 2e-6, OpenFlanks.CONTACT_ONLY))
+    )
+    response = simulate(model, 2000.0)
+    moved = response.coordinates @ model.reduction.basis.T @ model.machine.linear.rows.T
+    at_rest = mean_equilibrium(machines["casing"])
+    expected = at_rest.displacements @ model.machine.linear.rows.T
+    np.testing.assert_allclose(moved.mean(axis=0), expected[0], atol=1e-7)
