@@ -21,8 +21,12 @@ from facegear.contact.gear_flank import (
 )
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Sector
+from facegear.contact.pattern import pattern_margins
 from facegear.contact.summary import BY_FLANK_COLUMNS
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
+from facegear.contact.tooth_errors import loaded_curves
+from facegear.teeth.flank_shapes import DeviationGrid
+from facegear.teeth.limits import radius_limits
 from facegear.teeth.placement import mirror_design, nominal_pairs
 
 SIZES, CUTS = COARSE
@@ -74,6 +78,25 @@ def test_mirrored_pair_has_the_compliance_of_the_coast_flanks_on_the_same_mesh(b
         mirrored = bodies_of(name)[1][number].compliance
         scale = mirrored.loaded_tooth.max()
         np.testing.assert_allclose(coast.loaded_tooth, mirrored.loaded_tooth, rtol=1e-7, atol=1e-8 * scale)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_more_material_on_every_tooth_comes_early_by_as_much_and_patterns_know_their_edges(bodies_of, name):
+    design, bodies = public_pair(name), bodies_of(name)
+    found = contact_analysis(design, (STEEL, STEEL), bodies, PLAN)
+    sides = {body: flank.side for body, flank in zip(BUILDERS, bodies[0], strict=True)}
+    grids = {
+        "pinion": DeviationGrid((-0.02, 0.02), (0.0, 0.05), ((1e-6, 1e-6), (1e-6, 1e-6))),
+        "face_gear": DeviationGrid((0.1, 0.3), (0.0, 0.02), ((2e-6, 2e-6), (2e-6, 2e-6))),
+    }
+    curves = loaded_curves(design, sides, found.loads, 500.0, {body: 3 * (grids[body],) for body in grids})
+    # teeth are no longer rigid where fillets take a part of the torque, with other lever arms
+    assert curves["pinion"] == pytest.approx(np.full(9, 1e-6), rel=1e-3)
+    assert curves["face_gear"] == pytest.approx(np.full(9, 2e-6), rel=1e-3)
+    margins = pattern_margins(found.pressure[0], design, 500.0)
+    limits = radius_limits(design)
+    assert margins.undercut >= design.face_gear.inner_radius - limits.inner - 1e-12
+    assert 0.0 <= margins.pinion_tip < design.module
 
 
 def test_stored_flanks_of_all_pairs_come_back(bodies_of):
