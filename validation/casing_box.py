@@ -1,8 +1,9 @@
 """Make the casing of config/casing.yaml: a box meshed by gmsh, matrices by CalculiX, reduced by facegear.
 
 `python -m validation.casing_box FOLDER` needs gmsh and meshio (extra `fe`) and the program `ccx`. It writes
-the mesh, the input of CalculiX, its matrices (`box.sti`, `.mas`, `.dof`), the list of nodes with the patches
-of seats and feet, and `box.npz`: both matrices reduced to these patches and 30 modes, in mm, t and s.
+the mesh, the input of CalculiX, its matrices (files of the kinds .sti, .mas and .dof), the list of nodes with
+the patches of seats and feet, and an npz file: both matrices reduced to these patches and 30 modes, in mm, t
+and s.
 """
 
 import itertools

@@ -6,20 +6,20 @@ from math import degrees, radians
 from string import ascii_uppercase
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
 from facegear.bearings.response import BALL_LIMIT, ROLLER_LIMIT
 from facegear.bearings.shaft import RollingShaft, ShaftState, Support, find_shaft_equilibrium, follow_pinion
 from facegear.errors import ConfigError, NotConverged
+from facegear.machine.placed_bearings import PlacedBearing
 from facegear.machine.statics import Equilibria
 from facegear.parts.shafts import Elasticity, Segment
 from facegear.rigid_body import MOTIONS
 from facegear.schema.rolling import BALLS, RollingSection
 from facegear.schema.shafts import PreloadSection, ShaftSection
 from facegear.schema.transmission import Transmission
-from facegear.strength.bearing_rating import PlacedBearing
 
 GROOVE_RATIO = 0.52
 """Radius of a groove over the ball's diameter, dimensionless, where none is given: the value for which
@@ -123,7 +123,9 @@ def _rolling_shaft(section: ShaftSection) -> RollingShaft:
     largest = LARGEST_PRELOAD * 1e-3 * min(diameters)
     if excess(largest) < 0.0:
         raise ConfigError("preload.axial_n", thrust, f"less than {thrust + excess(largest):.4g} N")
-    return _preloaded(section, float(brentq(excess, -largest, largest, xtol=1e-15, rtol=1e-13)))
+    return _preloaded(
+        section, float(scipy.optimize.brentq(excess, -largest, largest, xtol=1e-15, rtol=1e-13))
+    )
 
 
 def _preloaded(section: ShaftSection, distance: float) -> RollingShaft:

@@ -12,8 +12,14 @@ from facegear.machine.casing_coordinates import CASING, CASING_MODE, casing_moti
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
 from facegear.machine.modes import Modes
+from facegear.machine.shaft_tables import (
+    bearing_names,
+    ring_strains,
+    shaft_bearing_loads,
+    tilting_moments,
+)
 from facegear.machine.static_gears import at_rest
-from facegear.machine.statics import Equilibria, mean_equilibrium
+from facegear.machine.statics import Equilibria, bearing_forces, mean_equilibrium
 
 FORCES = ("x_n", "y_n", "z_n", "tilt_x_n_m", "tilt_y_n_m", "tilt_z_n_m")
 """Columns of forces along and moments about the casing's axes."""
@@ -118,7 +124,7 @@ def applied_loads(machine: Machine) -> Array:
 
 
 def ground_loads(machine: Machine, equilibrium: Equilibria) -> Array:
-    """Return the loads of bodies that stand on no seat of the casing, on the ground.
+    """Return the loads on the ground of bodies and bearings that stand on no seat of the casing.
 
     Parameters
     ----------
@@ -134,12 +140,28 @@ def ground_loads(machine: Machine, equilibrium: Equilibria) -> Array:
         holds moments, which are not in it.
     """
     assert machine.casing is not None
-    loads = (equilibrium.displacements[0] @ machine.linear.stiffness)[machine.linear.translations]
-    total = np.zeros(6)
-    for body, force in enumerate(loads):
-        if body not in machine.casing.bearing_seats:
+    total, forces = np.zeros(6), bearing_forces(machine, equilibrium)
+    seats, line = machine.casing.bearing_seats, machine.drive_line
+    for body, force in enumerate(forces[0]):
+        if body not in seats:
             axes, point = body_axes(machine.layout, body)
             total += about_origin(point, np.append(axes.T @ force, np.zeros(3)))
+    if line is None:
+        return total
+    loads = shaft_bearing_loads(
+        line,
+        forces,
+        tilting_moments(machine, equilibrium),
+        equilibrium.shafts,
+        ring_strains(machine, equilibrium.displacements),
+    )[0]
+    numbers: dict[int, int] = {}
+    for (body, _), load in zip(bearing_names(line), loads, strict=True):
+        number = numbers[body] = numbers.get(body, -1) + 1
+        if body in seats and not seats[body][number]:
+            distance = float(machine.casing.bearing_places[body][number])
+            axes, point = body_axes(machine.layout, body, distance)
+            total += about_origin(point, np.append(axes.T @ load[:3], axes[:2].T @ load[3:]))
     return total
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft, ShaftState
@@ -67,8 +67,8 @@ def shaft_elements(
         assert shaft is not None
         rows, count = shaft.rigid[:, : at.size], at.size
         if (seats := _ring_motions(casing, pinion)) is not None:
-            moving = np.flatnonzero(seats.any(axis=0))
-            rows, at = np.hstack([rows, -seats[:, moving]]), np.append(at, first + moving)
+            seat_columns = np.flatnonzero(seats.any(axis=0))
+            rows, at = np.hstack([rows, -seats[:, seat_columns]]), np.append(at, first + seat_columns)
         # Tilts of the pinion that are no coordinates are the first inner ones.
         motions = np.append(np.arange(count), at.size + np.arange(MOTIONS - count))
         yield pinion, ShaftElement(shaft, at, rows, motions)
@@ -130,11 +130,11 @@ def add_tangents(model: LinearModel, line: DriveLine | None, casing: Casing | No
         tangent, force = outer_tangent(state, at.size, with_seats=seats is not None)
         motion, carry = state.pinion[: at.size], np.eye(at.size)
         if seats is not None:
-            shaft, moving = line.seats[pinion].rolling, np.flatnonzero(seats.any(axis=0))
+            shaft, seat_columns = line.seats[pinion].rolling, np.flatnonzero(seats.any(axis=0))
             assert shaft is not None
             motion = np.append(motion, seats_at(shaft, state))
-            carry = scipy.linalg.block_diag(carry, seats[:, moving])
-            at = np.append(at, casing_start(model) + moving)
+            carry = scipy.linalg.block_diag(carry, seats[:, seat_columns])
+            at = np.append(at, casing_start(model) + seat_columns)
         stiffness[np.ix_(at, at)] += carry.T @ tangent @ carry
         loads[at] += carry.T @ (tangent @ motion - force)
     return replace(model, stiffness=stiffness, forces=model.forces + loads, tangent_loads=loads)

@@ -12,6 +12,7 @@ from facegear.io.matrices.labelled_matrix import (
     read_numbers,
     symmetric,
 )
+from facegear.number_format import count_noun
 
 ENDINGS = {"stiffness": ".sti", "mass": ".mas"}
 """Endings of the files; damping is not stored."""
@@ -40,7 +41,8 @@ def read_stored(path: Path) -> LabelledMatrix:
     row, column = entries[:, :2].astype(np.int64).T - 1
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= node.size:
         raise MatrixFault(
-            f"it has row {max(row.max(), column.max()) + 1}, but {path.stem}.dof {node.size} dofs"
+            f"it has row {max(row.max(), column.max()) + 1}, "
+            f"but {path.stem}.dof has {count_noun(node.size, 'row')}"
         )
     is_stored = entries[:, 2] != 0.0
     triangle = bool((row <= column).all())

@@ -194,7 +194,7 @@ def test_a_skew_part_above_rounding_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("key", "content", "reason"),
     [
-        ("dofs", "node,dof\n101,1\n", "stiffness of the casing.*it has 12 rows and 12 columns, but 1 dofs"),
+        ("dofs", "node,dof\n101,1\n", "stiffness of the casing.*it has 12 rows and 12 columns, but 1 dof"),
         ("dofs", "row,dof\n101,1\n", "first line must be node,dof"),
         ("dofs", "node,dof\n101,x\n", "whole numbers"),
         ("nodes", "node,x_mm,y_mm,z_mm\n101,0,0,0\n", "node 205"),

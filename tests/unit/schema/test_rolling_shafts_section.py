@@ -4,12 +4,15 @@ from string import ascii_uppercase
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
+from three_pinions import TEXT
 
 from facegear.bearings.shaft import find_shaft_equilibrium
 from facegear.build.rolling import nominal_state, rolling_shaft
 from facegear.errors import ConfigErrors
 from facegear.schema.base import parse
 from facegear.schema.shafts import ShaftSection
+from facegear.schema.transmission import Transmission
 
 BALL, ROLLER = {"card": "deep_groove_6210"}, {"card": "cylindrical_roller_nu210"}
 AHEAD = {"card": "angular_contact_7208", "loaded_by": "+z"}
@@ -127,3 +130,23 @@ def test_bearings_far_too_small_for_the_torque_have_a_state_to_begin_with():
     small = parse(ShaftSection, shaft({"rolling": tiny}, {"rolling": tiny}), "the shaft")
     assert nominal_state(made, 1e4).pinion_load[0] == pytest.approx(1e4)
     assert 0.0 <= nominal_state(small, 1e7).pinion_load[0] < 1e7
+
+
+def transmission(**changes):
+    values = YAML(typ="safe").load(TEXT)
+    values["pinion"] = {**values["pinion"], **changes.pop("pinion", {})}
+    return parse(Transmission, {**values, "shafts": {"one": shaft(BALL, BALL)}, **changes})
+
+
+def test_a_clearance_of_the_pinion_beside_rolling_bearings_is_refused():
+    assert transmission().shafts["one"].is_rolling
+    with pytest.raises(ConfigErrors) as refusal:
+        transmission(pinion={"clearance_um": 10.0})
+    (line,) = str(refusal.value).splitlines()
+    assert "pinion.clearance_um = 10.0" in line and "0 beside rolling, whose clearance_diametral_um" in line
+
+
+def test_a_bearing_stiffness_of_the_pinion_beside_rolling_bearings_is_refused():
+    stiffness = {"x": 1e8, "y": 1e8, "z": 0.0}
+    with pytest.raises(ConfigErrors, match=r"single_pinions\.one\.bearing_stiffness_n_per_m.*left out"):
+        transmission(single_pinions={"one": {"bearing_stiffness_n_per_m": stiffness}})
