@@ -21,11 +21,12 @@ from facegear.machine.machine import Machine
 from facegear.machine.modes import ModeName, Modes, drive_flanks, modes_of
 from facegear.machine.supports import has_rolling_bearings
 
-MOTION_LIMIT = 1.5
+MOTION_LIMIT = 1.0
 """Highest frequency of the modes of a casing in motion over that of the machine without it.
 
-The casing of config/casing.yaml: amplitudes of deflections differ from those with all modes by 0.2 % with
-1.5, and by 0.7 % with 1.0, at a sixth and a twelfth of the time."""
+Steps in time then need not be shorter than without the casing. For the casing of config/casing.yaml
+amplitudes of deflections differ from those with all modes by 0.7 %, with 1.5 by 0.2 %, at a twelfth and a
+sixth of the time."""
 FREQUENCY_TOLERANCE = 1e-6
 """Relative difference of a frequency, undecided contacts open or closed, that counts as none."""
 

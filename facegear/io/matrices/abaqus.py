@@ -13,6 +13,7 @@ from facegear.io.matrices.labelled_matrix import (
     read_lines,
     read_numbers,
 )
+from facegear.number_format import count_noun
 
 COORDINATE_COLUMNS = 5
 """Numbers of a line: node, dof, node, dof, entry."""
@@ -113,7 +114,9 @@ def read_substructure(path: Path, quantity: str) -> LabelledMatrix | None:
     size = len(rows)
     if len(values) != size * (size + 1) // 2:
         count = size * (size + 1) // 2
-        raise MatrixFault(f"its lower triangle must have {count} numbers for {size} dofs, not {len(values)}")
+        raise MatrixFault(
+            f"its lower triangle must have {count} numbers for {count_noun(size, 'dof')}, not {len(values)}"
+        )
     matrix = np.zeros((size, size))
     matrix[np.tril_indices(size)] = values
     matrix += np.tril(matrix, -1).T

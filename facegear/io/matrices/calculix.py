@@ -40,10 +40,8 @@ def read_stored(path: Path) -> LabelledMatrix:
     entries = read_numbers(path, 3)
     row, column = entries[:, :2].astype(np.int64).T - 1
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= node.size:
-        raise MatrixFault(
-            f"it has row {max(row.max(), column.max()) + 1}, "
-            f"but {path.stem}.dof has {count_noun(node.size, 'row')}"
-        )
+        last = max(row.max(), column.max()) + 1
+        raise MatrixFault(f"it has row {last}, but {path.stem}.dof {count_noun(node.size, 'dof')}")
     is_stored = entries[:, 2] != 0.0
     triangle = bool((row <= column).all())
     return LabelledMatrix(
