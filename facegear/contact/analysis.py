@@ -16,7 +16,7 @@ from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
-from facegear.contact.summary import by_flank, by_torque
+from facegear.contact.summary import by_flank, by_torque, with_wrenches
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
 
 
@@ -194,8 +194,14 @@ class ContactAnalysis:
 
     @cached_property
     def by_flank(self) -> pd.DataFrame:
-        """`by_torque` of both flanks of both gears, columns BY_FLANK_COLUMNS."""
-        return by_flank(self.by_torque, [model.design for model in self.models], self.numbers)
+        """`by_torque` of both flanks of both gears, columns BY_FLANK_COLUMNS; with `with_wrenches` for teeth
+        other than spur ones.
+        """
+        designs = [model.design for model in self.models]
+        if designs[0].is_spur:
+            return by_flank(self.by_torque, designs, self.numbers)
+        tables = zip(self.by_torque, self.ltca, self.wrenches, strict=True)
+        return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)
 
     @cached_property
     def loads(self) -> dict[str, AnyArray]:

@@ -22,7 +22,7 @@ from facegear.contact.gear_flank import (
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Sector
 from facegear.contact.pattern import pattern_margins
-from facegear.contact.summary import BY_FLANK_COLUMNS
+from facegear.contact.summary import BY_FLANK_COLUMNS, WRENCH_MEANS
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.contact.tooth_errors import loaded_curves
 from facegear.teeth.flank_shapes import DeviationGrid
@@ -63,7 +63,7 @@ def test_both_flanks_balance_their_torque_with_the_axial_force_of_their_helicoid
         assert error.max() < 0.02
         for loads in pressure.loads:
             assert np.isfinite(loads.pressure[loads.edge == 0]).all()
-    assert list(found.by_flank.columns) == list(BY_FLANK_COLUMNS)
+    assert list(found.by_flank.columns) == [*BY_FLANK_COLUMNS, "load_share_max", *WRENCH_MEANS]
     assert len(found.by_flank) == 4 * len(PLAN.torques)
 
 
