@@ -9,8 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
+import scipy
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
@@ -121,7 +120,7 @@ class PointContact:
     def integrals(self) -> tuple[float, float]:
         """Complete elliptic integrals K and E of the modulus k with k^2 = 1 - 1 / axis_ratio^2."""
         parameter = 1.0 - 1.0 / self.axis_ratio**2
-        return float(ellipk(parameter)), float(ellipe(parameter))
+        return float(scipy.special.ellipk(parameter)), float(scipy.special.ellipe(parameter))
 
     @property
     def stiffness(self) -> float:
@@ -158,10 +157,10 @@ def touch_groove(ball: float, groove: float, pitch_ratio: float, modulus: float)
     def excess(ratio: float) -> float:
         """Return F(rho) of an ellipse with this axis ratio less the given one, dimensionless."""
         parameter = 1.0 - 1.0 / ratio**2
-        integrals = ellipk(parameter) / ellipe(parameter)
+        integrals = scipy.special.ellipk(parameter) / scipy.special.ellipe(parameter)
         return float(1.0 - 2.0 * (integrals - 1.0) / (ratio**2 - 1.0) - difference)
 
-    ratio = brentq(excess, 1.0 + 1e-4, LARGEST_RATIO, xtol=1e-14, rtol=1e-15)
+    ratio = scipy.optimize.brentq(excess, 1.0 + 1e-4, LARGEST_RATIO, xtol=1e-14, rtol=1e-15)
     return PointContact(float(ratio), 2.0 / ball * total, modulus)
 
 
@@ -422,7 +421,9 @@ class RollerBearing(RollingBearing):
 
         furthest = float(drops.max() + (force / (stiffness * self.slices)) ** (1.0 / LINE_EXPONENT))
         position = float(
-            brentq(lambda at: slice_loads(at).sum() - force, 0.0, furthest, xtol=1e-18, rtol=1e-15)
+            scipy.optimize.brentq(
+                lambda at: slice_loads(at).sum() - force, 0.0, furthest, xtol=1e-18, rtol=1e-15
+            )
         )
         approaches = np.maximum(position - drops, 0.0)
         energy = float(9.0 / 19.0 * slice_loads(position) @ approaches)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
@@ -121,9 +121,9 @@ def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
         N; not a number under thrust for angular contact ball bearings below 20 or above 45 degrees.
     """
     radial, thrust = np.hypot(force[..., 0], force[..., 1]), np.abs(force[..., 2])
-    limit, radial_factor, thrust_factor = _load_factors(bearing, thrust)
+    limit, x, y = _load_factors(bearing, thrust)
     with np.errstate(invalid="ignore"):  # e is infinite, and a radial load of 0 leaves no number
-        return np.where(thrust <= limit * radial, radial, radial_factor * radial + thrust_factor * thrust)
+        return np.where(thrust <= limit * radial, radial, x * radial + y * thrust)
 
 
 def _load_factors(bearing: AnyBearing, thrust: Array) -> tuple[Array | float, Array | float, Array | float]:
@@ -439,12 +439,12 @@ def life_together(bearings: Sequence[AnyBearing], lives: Sequence[float]) -> flo
         if life < np.inf
     ]
     if not finite:
-        return float("inf") if not np.isnan(np.sum(lives)) else float("nan")
+        return float("nan") if np.isnan(np.sum(lives)) else float("inf")
     shortest = min(life for life, _ in finite)
 
     def excess(logarithm: float) -> float:
         """Return the sum of (L / L_i)^e_i less 1 at the logarithm of L over the shortest life."""
-        together = shortest * np.exp(logarithm)
-        return float(sum((together / life) ** slope for life, slope in finite)) - 1.0
+        return float(sum((shortest * np.exp(logarithm) / life) ** slope for life, slope in finite)) - 1.0
 
-    return float(shortest * np.exp(brentq(excess, -np.log(len(finite)) - 1.0, 0.0, xtol=1e-14)))
+    lowest = -np.log(len(finite)) - 1.0
+    return float(shortest * np.exp(scipy.optimize.brentq(excess, lowest, 0.0, xtol=1e-14)))

@@ -27,9 +27,8 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("compliance",), ALL_KINDS),
-    **dict.fromkeys(("contact", "tooth_errors", "mesh_law", "pose_surface", "displaced_contact"), ALL_KINDS),
-    **dict.fromkeys(("root_stress", "posed_stress", "rating"), ALL_KINDS),
+    **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
+    **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
     **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
     **dict.fromkeys(("lubrication", "machine_loss"), ALL_KINDS),
     **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),

@@ -6,20 +6,20 @@ from math import degrees, radians
 from string import ascii_uppercase
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
 from facegear.bearings.response import BALL_LIMIT, ROLLER_LIMIT
-from facegear.bearings.shaft import RollingShaft, ShaftState, Support, find_shaft_equilibrium
-from facegear.errors import ConfigError
+from facegear.bearings.shaft import RollingShaft, ShaftState, Support, find_shaft_equilibrium, follow_pinion
+from facegear.errors import ConfigError, NotConverged
+from facegear.machine.placed_bearings import PlacedBearing
 from facegear.machine.statics import Equilibria
 from facegear.parts.shafts import Elasticity, Segment
 from facegear.rigid_body import MOTIONS
 from facegear.schema.rolling import BALLS, RollingSection
 from facegear.schema.shafts import PreloadSection, ShaftSection
 from facegear.schema.transmission import Transmission
-from facegear.strength.bearing_rating import PlacedBearing
 
 GROOVE_RATIO = 0.52
 """Radius of a groove over the ball's diameter, dimensionless, where none is given: the value for which
@@ -74,8 +74,11 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
     )
 
 
-LARGEST_PRELOAD = 2e-3
-"""Motion of a preloaded pair's inner rings, m, within which its thrust is looked for."""
+PARTS = (1.0, 0.1, 0.01, 0.0)
+"""Parts of an estimated load that are tried one after the other, dimensionless."""
+LARGEST_PRELOAD = 0.05
+"""Motion of a preloaded pair's inner rings over the smaller element diameter, dimensionless, within which its
+thrust is looked for."""
 
 
 def rolling_shaft(section: ShaftSection) -> RollingShaft:
@@ -115,10 +118,13 @@ def _rolling_shaft(section: ShaftSection) -> RollingShaft:
         state = find_shaft_equilibrium(_preloaded(section, distance), np.zeros(MOTIONS))
         return float(towards * state.forces[number, 2]) - thrust
 
-    if excess(LARGEST_PRELOAD) < 0.0:
-        raise ConfigError("preload.axial_n", thrust, f"less than {thrust + excess(LARGEST_PRELOAD):.4g} N")
+    sections = [section.bearings[ascii_uppercase.index(letter)].rolling for letter in preload.bearings]
+    diameters = [rolling.element_diameter_mm for rolling in sections if rolling is not None]
+    largest = LARGEST_PRELOAD * 1e-3 * min(diameters)
+    if excess(largest) < 0.0:
+        raise ConfigError("preload.axial_n", thrust, f"less than {thrust + excess(largest):.4g} N")
     return _preloaded(
-        section, float(brentq(excess, -LARGEST_PRELOAD, LARGEST_PRELOAD, xtol=1e-15, rtol=1e-13))
+        section, float(scipy.optimize.brentq(excess, -largest, largest, xtol=1e-15, rtol=1e-13))
     )
 
 
@@ -147,7 +153,8 @@ def _offsets(section: ShaftSection, preload: PreloadSection | None, distance: fl
     """
     offsets = np.zeros((len(section.bearings), MOTIONS))
     for number, bearing in enumerate(section.bearings):
-        offsets[number, :2] = -1e-6 * bearing.position_um.x, -1e-6 * bearing.position_um.y
+        bore = bearing.position_um
+        offsets[number, :3] = -1e-6 * np.array([bore.x, bore.y, bore.z])
     if preload is None:
         return offsets
     pair = [ascii_uppercase.index(letter) for letter in preload.bearings]
@@ -177,7 +184,8 @@ def nominal_state(section: ShaftSection, force: float) -> ShaftState:
     Returns
     -------
     ShaftState
-        Under `force` along x and half of it along y.
+        Under `force` along x and half of it along y, or as much of it as bearings that are far too small
+        hold: PARTS.
     """
     return _nominal_state(section, force)
 
@@ -185,7 +193,13 @@ def nominal_state(section: ShaftSection, force: float) -> ShaftState:
 @lru_cache(maxsize=64)
 def _nominal_state(section: ShaftSection, force: float) -> ShaftState:
     """Return `nominal_state` of a section."""
-    return find_shaft_equilibrium(rolling_shaft(section), np.array([force, 0.5 * force, 0.0, 0.0, 0.0]))
+    shaft, load = rolling_shaft(section), force * np.array([1.0, 0.5, 0.0, 0.0, 0.0])
+    for part in PARTS:
+        try:
+            return find_shaft_equilibrium(shaft, part * load)
+        except NotConverged:
+            continue
+    return follow_pinion(shaft, np.zeros(MOTIONS), np.zeros((len(shaft.supports), MOTIONS)))
 
 
 def placed_bearings(section: Transmission) -> list[PlacedBearing]:

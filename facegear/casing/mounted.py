@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from facegear.arrays import Array, Arrays
 from facegear.casing.reduction import MOTIONS, Interface, Reduction, own_modes

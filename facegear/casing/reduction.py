@@ -13,9 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.linalg
-from scipy import sparse
-from scipy.sparse import linalg
+import scipy
 
 from facegear.arrays import Array, Integers
 from facegear.casing.whole import WholeCasing, rigid_rows
@@ -183,11 +181,11 @@ class _Factor:
             raise _loose(f"{diagonal.min():.3g} on its diagonal")
         self.matrix = matrix.tocsc()
         self.scale = 1.0 / np.sqrt(diagonal)
-        scaling = sparse.diags_array(self.scale)
+        scaling = scipy.sparse.diags_array(self.scale)
         unit = (scaling @ self.matrix @ scaling).tocsc()
         try:
             # No pivoting keeps the symmetric order, so that the pivots have the signs of the eigenvalues.
-            self.factor = linalg.splu(
+            self.factor = scipy.sparse.linalg.splu(
                 unit,
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=0.0,
@@ -224,11 +222,13 @@ def _fixed_modes(factor: _Factor, mass: Any, count: int) -> tuple[Array, Array]:
     if size <= DENSE or count >= size // 2:
         frequencies, shapes = own_modes(factor.matrix.toarray(), mass.toarray())
         return frequencies[:count], _with_sign(shapes[:, :count])
-    operator = linalg.LinearOperator((size, size), matvec=factor.solve, dtype=float)
+    operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=factor.solve, dtype=float)
     start = np.random.default_rng(0).standard_normal(size)
     try:
-        values, shapes = linalg.eigsh(factor.matrix, count, mass, sigma=0.0, OPinv=operator, v0=start)
-    except linalg.ArpackError as error:
+        values, shapes = scipy.sparse.linalg.eigsh(
+            factor.matrix, count, mass, sigma=0.0, OPinv=operator, v0=start
+        )
+    except scipy.sparse.linalg.ArpackError as error:
         raise NotConverged("modes of the casing", f"{count} modes", str(error)[:120]) from None
     order = np.argsort(values)
     values, shapes = values[order], shapes[:, order]

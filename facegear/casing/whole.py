@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.errors import InvalidInput
@@ -232,7 +232,7 @@ def whole_casing(
         condition = f"with node {absent_nodes[0]}, which has rows in its stiffness"
         raise InvalidInput("nodes of the casing", count_noun(numbers.size, "node"), condition)
     has_rows = np.isin(numbers, stiffness.node)
-    empty = sparse.csc_array((stiffness.size, stiffness.size))
+    empty = scipy.sparse.csc_array((stiffness.size, stiffness.size))
     return WholeCasing(
         stiffness.node,
         stiffness.direction,
@@ -332,7 +332,7 @@ def require_mass(casing: WholeCasing, mass: float | None) -> None:
 
 def _scale_rows(matrix: Any, scale: Array) -> Any:
     """Return a sparse matrix with rows and columns multiplied by `scale` (n,)."""
-    diagonal = sparse.diags_array(scale)
+    diagonal = scipy.sparse.diags_array(scale)
     return (diagonal @ matrix @ diagonal).tocsc()
 
 

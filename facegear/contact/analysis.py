@@ -16,9 +16,8 @@ from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
-from facegear.contact.summary import by_flank, by_torque
+from facegear.contact.summary import by_flank, by_torque, with_wrenches
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
-from facegear.teeth.placement import GEARS
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -195,8 +194,14 @@ class ContactAnalysis:
 
     @cached_property
     def by_flank(self) -> pd.DataFrame:
-        """`by_torque` of both flanks of both gears, columns BY_FLANK_COLUMNS."""
-        return by_flank(self.by_torque, [model.design for model in self.models], self.numbers)
+        """`by_torque` of both flanks of both gears, columns BY_FLANK_COLUMNS; with `with_wrenches` for teeth
+        other than spur ones.
+        """
+        designs = [model.design for model in self.models]
+        if designs[0].is_spur:
+            return by_flank(self.by_torque, designs, self.numbers)
+        tables = zip(self.by_torque, self.ltca, self.wrenches, strict=True)
+        return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)
 
     @cached_property
     def loads(self) -> dict[str, AnyArray]:
@@ -211,7 +216,6 @@ def contact_analysis(
     plan: ContactPlan,
     every_flank: bool = True,
     known_contact: KnownContact | None = None,
-    gears: Sequence[str] = GEARS,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
@@ -224,16 +228,14 @@ def contact_analysis(
     materials : tuple[Material, Material]
         Pinion and face gear.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
-        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`; the first
-        alone without `every_flank`.
+        Surfaces and compliances of pinion and face gear for each of `placement.nominal_pairs`, or for those
+        of the upper gear; the first alone without `every_flank`.
     plan : ContactPlan
         Torques, positions and options.
     every_flank : bool
         Whether all flanks are solved, not only the upper gear's drive flank.
     known_contact : KnownContact, optional
         Contact of a pair that differs little, with the same nodes and plan.
-    gears : Sequence[str]
-        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -245,7 +247,7 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    models, numbers = flank_models(design, flanks, gears)
+    models, numbers = flank_models(design, flanks)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
     return ContactAnalysis(

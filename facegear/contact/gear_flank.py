@@ -100,7 +100,8 @@ def every_flank_to_arrays(flanks: Sequence[GearFlank]) -> dict[str, AnyArray]:
     Returns
     -------
     dict of arrays
-        Those of `to_arrays` for the first pair, and for each further one those with its number in front.
+        Arrays with the (...) shapes of ARRAY_SHAPES for the first pair, and for each further one the same
+        with its number in front of their names.
     """
     further = {
         f"{number}_{name}": values
@@ -318,21 +319,37 @@ def gear_flanks(
         As `gear_flank` does.
     """
     flanks: dict[PairDesign, GearFlank] = {}
-    keys = [_meshed(pair, body) for pair in nominal_pairs(design, gears)]
+    keys = [_mesh_key(pair, body) for pair in nominal_pairs(design, gears)]
     for key, pair in zip(keys, nominal_pairs(design, gears), strict=True):
         if key not in flanks:
             flanks[key] = gear_flank(pair, body, sizes, material, plan)
     return [flanks[key] for key in keys]
 
 
-def _meshed(pair: PairDesign, body: str) -> PairDesign:
+def _mesh_key(pair: PairDesign, body: str) -> PairDesign:
     """Return the pair as far as a body's mesh depends on it: a pinion's does not on how its axis stands."""
     return replace(pair, shaft_angle=RIGHT_ANGLE, offset=0.0) if body == "pinion" else pair
 
 
-def flank_models(
-    design: PairDesign, flanks: Sequence[PairFlanks], gears: Sequence[str] = GEARS
-) -> tuple[list[ContactModel], Integers]:
+def gears_of(design: PairDesign, flanks: Sequence[PairFlanks]) -> Sequence[str]:
+    """Return the gears that flanks are of: `upper` alone where those of another lower gear are missing.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    flanks : Sequence[tuple[GearFlank, GearFlank]]
+        Flanks of the first of `placement.nominal_pairs`.
+
+    Returns
+    -------
+    Sequence[str]
+        Names of the gears.
+    """
+    return GEARS if len(flanks) >= len(nominal_pairs(design)) else GEARS[:1]
+
+
+def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list[ContactModel], Integers]:
     """Build the contact models of all flanks that differ, each on the bodies that it belongs to.
 
     Parameters
@@ -341,8 +358,6 @@ def flank_models(
         Pair of gears.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
         Flanks of `placement.nominal_pairs`, in their order; models of missing ones are left out.
-    gears : Sequence[str]
-        Gears that there are, of `upper` and `lower`.
 
     Returns
     -------
@@ -350,10 +365,10 @@ def flank_models(
         Models, that of the upper gear's drive flank first, and the number of the model of each gear's
         each flank, (2, 2), as `placement.distinct_pairs` returns it.
     """
-    different, numbers = distinct_pairs(design, gears)
-    bodies = dict(zip(nominal_pairs(design, gears), flanks, strict=False))
-    needed = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
-    return [contact_model(pair, *of_pair) for pair, of_pair in needed if of_pair is not None], numbers
+    different, numbers = distinct_pairs(design, gears_of(design, flanks))
+    bodies = dict(zip(nominal_pairs(design), flanks, strict=False))
+    pair_bodies = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
+    return [contact_model(pair, *flanks) for pair, flanks in pair_bodies if flanks is not None], numbers
 
 
 def flanks_of(pair: PairDesign, design: PairDesign, flanks: Sequence[PairFlanks]) -> PairFlanks:

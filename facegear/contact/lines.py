@@ -66,12 +66,12 @@ class ContactLines:
         Parameters
         ----------
         row, plane : (...) array of int
-            Numbers of lines and of their planes.
+            Numbers of lines and of their planes, dimensionless.
 
         Returns
         -------
         (...) array
-            Dimensionless; where the slope is not known, that of a generator.
+            Ratio, dimensionless; where the slope is not known, that of a generator.
         """
         return 1.0 / (self.cosine * np.cos(np.nan_to_num(self.slope[row, plane])))
 

@@ -167,7 +167,9 @@ def wrench_table(surface: PinionSurface, results: Sequence[LoadedPosition]) -> p
     pd.DataFrame
         Columns WRENCH_COLUMNS: `contact_wrench`, and the force on the pinion outwards along its own axis.
     """
-    outwards = _placed(surface.design, np.zeros(1), np.zeros(1)).directions(np.array([[0.0, 1.0, 0.0]]))[0, 0]
+    outwards = _pinion_motion(surface.design, np.zeros(1), np.zeros(1)).directions(
+        np.array([[0.0, 1.0, 0.0]])
+    )[0, 0]
     wrenches = [contact_wrench(surface, result) for result in results]
     rows = [
         (result.torque, result.position, *wrench, -wrench[:3] @ outwards)
@@ -195,14 +197,14 @@ def contact_wrench(surface: PinionSurface, result: LoadedPosition) -> Array:
     for spot in result.spots:
         points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
         angle = pinion_angle(design, result.position)
-        motion = _placed(design, angle[None], np.array([float(spot.tooth)]))
+        motion = _pinion_motion(design, angle[None], np.array([float(spot.tooth)]))
         force = spot.force[:, None] * motion.directions(points.normal)[0]
         wrench[:3] += force.sum(axis=0)
         wrench[3:] += np.cross(motion.points(points.position)[0], force).sum(axis=0)
     return wrench
 
 
-def _placed(design: PairDesign, phi1: Array, tooth: Array) -> RigidMotion:
+def _pinion_motion(design: PairDesign, phi1: Array, tooth: Array) -> RigidMotion:
     """Return the motions (p,) from the body frame of the pinion's tooth 0 to the mesh frame, where the pinion
     stands at angles phi1 (p,) rad and the tooth is number `tooth` (p,).
     """

@@ -141,7 +141,7 @@ def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
     at HEIGHTS.
 
     Plane strain in plane number `plane` of the mesh, with TEETH teeth in a row and bore or rim back
-    fixed. The right flank of the middle tooth is loaded along its inward normal.
+    fixed. The flank of the middle tooth that meshes when the pinion drives is loaded along its inward normal.
     """
     points, at = _section(tooth, plane)
     count = len(points)
@@ -156,10 +156,14 @@ def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
     back = tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]
     fixed_nodes = number[(np.unique(back[back < count]) + count * np.arange(teeth)[:, None]).ravel()]
     tooth_nodes = number[count * (teeth // 2) :][:count]
-    flank, fillet = (tooth_nodes[tooth.surfaces[f"{name}_right"].nodes[:, 0]] for name in ("flank", "fillet"))
+    side = LOADED_SIDE[tooth.body]
+    flank, fillet = (
+        tooth_nodes[tooth.surfaces[f"{name}_{side}"].nodes[:, 0]] for name in ("flank", "fillet")
+    )
+    inwards = -1.0 if side == "right" else 1.0
     loads = np.zeros((nodes.size, len(HEIGHTS)))
     for column, height in enumerate(HEIGHTS):
-        _push(loads[:, column].reshape(nodes.shape), nodes, flank, height)
+        _push(loads[:, column].reshape(nodes.shape), nodes, flank, height, inwards)
     free = np.setdiff1d(np.arange(nodes.size), 2 * fixed_nodes[:, None] + np.arange(2))
     displacements = np.zeros_like(loads)
     displacements[free] = solve_sparse(_stiffness(nodes, cells, material)[free][:, free].tocsr(), loads[free])
@@ -204,13 +208,12 @@ def _lagrange(x: float) -> tuple[Array, Array]:
     return values, np.array([x - 0.5, -2.0 * x, x + 0.5])
 
 
-def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
-    """Add a force of 1 N/m into the tooth, along the inward normal of its right flank, to `load` (n, 2),
-    in place.
+def _push(load: Array, nodes: Array, flank: Integers, height: float, inwards: float) -> None:
+    """Add a force of 1 N/m into the tooth, along the inward normal of a flank, to `load` (n, 2), in place.
 
     `nodes` (n, 2): positions, m; `flank`: nodes of the flank from tip to root; `height`: where the force
-    acts, 0 at the flank's tip end to 1 at its root end. The force is spread by the element's quadratic
-    functions.
+    acts, 0 at the flank's tip end to 1 at its root end; `inwards`: sign of the normal's first component. The
+    force is spread by the element's quadratic functions.
     """
     station = height * (flank.size - 1)
     first = min(2 * int(station // 2), flank.size - 3)
@@ -218,7 +221,7 @@ def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
     values, slopes = _lagrange(station - first - 1.0)
     along = slopes @ nodes[members]
     normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
-    normal *= -np.sign(normal[0])  # the right flank faces +x
+    normal *= inwards * np.sign(normal[0])
     load[members] += values[:, None] * normal
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays, Integers
+from facegear.contact.pattern import SHARES
 from facegear.teeth.design import PairDesign
 from facegear.teeth.placement import FLANKS, GEARS
 
@@ -41,6 +42,12 @@ BY_FLANK_COLUMNS = (
 )
 """Columns of table `by_flank`: the flank with its assembly errors, and COLUMNS."""
 
+WRENCH_MEANS = (
+    *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
+    "pinion_axial_n",
+)
+"""Columns of a table of wrenches whose means over a pitch `by_flank` adds for teeth other than spur ones."""
+
 
 def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
     """Return the contact summary with the path radius as its last column.
@@ -60,6 +67,28 @@ def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
     return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
 
 
+def with_wrenches(by_torque: pd.DataFrame, ltca: pd.DataFrame, wrenches: pd.DataFrame) -> pd.DataFrame:
+    """Add the largest share of a pair of teeth and the mean wrench to a table of `by_torque`.
+
+    Parameters
+    ----------
+    by_torque : pd.DataFrame
+        Result of `by_torque`.
+    ltca : pd.DataFrame
+        Contact table, columns LTCA_COLUMNS.
+    wrenches : pd.DataFrame
+        Wrench of the pinion on the gear at the same torques and positions, columns WRENCH_COLUMNS.
+
+    Returns
+    -------
+    pd.DataFrame
+        The table with columns `load_share_max` and WRENCH_MEANS.
+    """
+    shares = ltca[list(SHARES)].max(axis=1).groupby(ltca["torque_n_m"]).max().rename("load_share_max")
+    means = wrenches.groupby("torque_n_m")[list(WRENCH_MEANS)].mean()
+    return by_torque.join(shares, on="torque_n_m").join(means, on="torque_n_m")
+
+
 def by_flank(
     variants: Sequence[pd.DataFrame], different: Sequence[PairDesign], numbers: Integers
 ) -> pd.DataFrame:
@@ -77,7 +106,7 @@ def by_flank(
     Returns
     -------
     pd.DataFrame
-        Columns BY_FLANK_COLUMNS, one row a flank and torque.
+        Columns BY_FLANK_COLUMNS, one row a flank and torque; further ones of the variants follow.
     """
     parts = []
     for (row, column), number in np.ndenumerate(numbers):
@@ -90,7 +119,9 @@ def by_flank(
             "gear_axial_um": 1e6 * assembly.gear_axial,
         }
         parts.append(variants[int(number)].assign(**flank_columns))
-    return pd.concat(parts, ignore_index=True)[list(BY_FLANK_COLUMNS)]
+    table = pd.concat(parts, ignore_index=True)
+    further = [name for name in table.columns if name not in BY_FLANK_COLUMNS]
+    return table[[*BY_FLANK_COLUMNS, *further]]
 
 
 def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:

@@ -84,8 +84,8 @@ def _reached_height(design: PairDesign, body: str, points: Array) -> Array:
     """
     family = design.family
     if body == "pinion":
-        reached = design.pinion_pitch_radius - design.face_gear.addendum + family.shift(points[..., 1])
-        return np.asarray(np.hypot(points[..., 0], points[..., 2]) - reached)
+        tip_reach = design.pinion_pitch_radius - design.face_gear.addendum + family.shift(points[..., 1])
+        return np.asarray(np.hypot(points[..., 0], points[..., 2]) - tip_reach)
     radius = np.hypot(points[..., 0], points[..., 1])
     # the pinion's tip is a meridian as the gear's tip is, deeper by both addenda
     depth = family.gear_tip.depth + design.face_gear.addendum + design.pinion.addendum

@@ -167,8 +167,8 @@ def surface_normals(design: PairDesign, points: Array) -> Array:
         low, high = np.full(at.shape, flank.pressure_angle), np.full(at.shape, 0.5 * pi)
         for _ in range(HALVINGS):
             gamma = 0.5 * (low + high)
-            place = root.point(gamma, at)
-            is_above = np.hypot(place[..., 0], place[..., 2]) > radius[below]
+            root_point = root.point(gamma, at)
+            is_above = np.hypot(root_point[..., 0], root_point[..., 2]) > radius[below]
             low, high = np.where(is_above, gamma, low), np.where(is_above, high, gamma)
         normals[below] = root.normal(0.5 * (low + high), at)
     return normals

@@ -18,6 +18,7 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.harmonics import stack_series, stacked_values
 from facegear.machine.block_statics import StaticBlocks, has_kernel, settle_all, static_blocks
+from facegear.machine.dense_positions import solve_one_by_one, solve_together
 from facegear.machine.dense_statics import RESIDUAL, Contacts, dense_equilibrium
 from facegear.machine.flank_errors import constant_errors, error_series, slow_errors
 from facegear.machine.flanks import flank_law, line_law
@@ -342,7 +343,8 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         if machine.drive_line is not None and machine.static_machine is not machine:
             displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
     else:
-        displacements, forces = _one_by_one(machine.linear, law, cycles, gaps)
+        solve = solve_together if machine.layout.kind is not None else solve_one_by_one
+        displacements, forces = solve(machine.linear, law, cycles, gaps)
     force_balance = balance(machine.linear, displacements, forces, law_at_positions.stiffness, gaps)
     force_balance.require(RESIDUAL_LIMIT, names)
     drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
@@ -379,21 +381,6 @@ def _by_blocks(blocks: StaticBlocks, law: LawAtPhases, gaps: Array) -> tuple[Arr
     start = np.zeros(blocks.coordinates.size)
     solution, forces, _ = settle_all(blocks.springs, law, gaps, TOLERANCE, start)
     return blocks.displacements(solution), forces
-
-
-def _one_by_one(linear: LinearModel, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
-    """Return displacements (K, dof), m and rad, and flank forces (K, flanks), N, by dense algebra.
-
-    cycles (K,): positions, mesh periods; gaps (K, flanks): deflections at which flanks touch, m.
-    """
-    never = np.full(gaps.shape[1], -np.inf)
-    solutions = [
-        dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
-        for at, gap in zip(cycles, gaps, strict=True)
-    ]
-    return np.array([solution[0] for solution in solutions]), np.array(
-        [solution[2] for solution in solutions]
-    )
 
 
 def static_bearing_forces(machine: Machine) -> Array:

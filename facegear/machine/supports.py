@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft, ShaftState

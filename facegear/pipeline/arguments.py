@@ -295,6 +295,10 @@ def without_loads(case: Case) -> Any:
     return {**section, "refinement": {**section["refinement"], "width": plan.refinement.width}}
 
 
+RIGHT_ANGLE_DEG = 90.0
+"""Shaft angle (deg) at which an upper and a lower gear are alike."""
+
+
 def gears_met(case: Case) -> list[str]:
     """Return the names of the machine's face gears, upper and lower; a single one is the upper.
 
@@ -311,6 +315,24 @@ def gears_met(case: Case) -> list[str]:
     """
     machine: Any = case.values["transmission"]
     return ["upper"] if machine is None or len(machine["face_gears"]) == 1 else ["upper", "lower"]
+
+
+def gears_with_bodies(case: Case) -> list[str]:
+    """Return the names of the face gears that flanks are needed of.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[str]
+        `upper`, and `lower` where there is one that the offset or the shaft angle makes another gear.
+    """
+    pair: Any = case.values["tooth_pair"]
+    is_alike = pair["offset_mm"] == 0.0 and pair["shaft_angle_deg"] == RIGHT_ANGLE_DEG
+    return ["upper"] if is_alike else gears_met(case)
 
 
 def sampled_contact(case: Case) -> bool:

@@ -83,10 +83,18 @@ class ShaftBearing(Section):
         return self
 
     def _check_position(self) -> None:
-        """Refuse the position of a bore of springs."""
-        if self.rolling is None and self.position_um != Position():
-            requirement = "left out of a bearing without rolling: single_pinions.<name>.position_um moves all"
-            refuse("position_um", self.position_um.model_dump(), requirement)
+        """Refuse the position of a bore of springs, and one of 0.02 element diameters or more."""
+        if self.rolling is None:
+            if self.position_um != Position():
+                requirement = "left out without rolling: single_pinions.<name>.position_um moves all bearings"
+                refuse("position_um", self.position_um.model_dump(), requirement)
+            return
+        largest = 20.0 * self.rolling.element_diameter_mm
+        for axis in "xyz":
+            distance = getattr(self.position_um, axis)
+            if abs(distance) >= largest:
+                requirement = f"smaller than 0.02 element_diameter_mm, which is {largest:g} um"
+                refuse(f"position_um.{axis}", distance, requirement)
 
     def _not_twice(self) -> None:
         """Refuse a bearing with a matrix and single stiffnesses, with rolling and any, or with nothing."""

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Mask
+from facegear.machine.drive_line import DriveLine
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.flanks import flank_law
 from facegear.machine.imperfections import Imperfections, Runout, perfect
@@ -240,10 +241,14 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
     torques = balanced_torques(new_layout, machine.torques[:pinions], float(lower))
-    # At rest a drive line is what the layout has in its place, unless meshes tilt the pinions.
+    # At rest a drive line is what the layout has in its place, unless meshes tilt the pinions. Rolling
+    # bearings know their load; where both flanks share a line of action they are springs.
     line = machine.drive_line
-    if line is not None:
-        line = None if layout.kind is None else replace(line, layout=new_layout)
+    if line is not None and layout.kind is None:
+        keeps_rolling = bool(line.rolling) and kinematics is layout.kinematics
+        line = _rolling_alone(line, new_layout) if keeps_rolling else None
+    elif line is not None:
+        line = replace(line, layout=new_layout)
     machine_with_layout = replace(
         machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=line
     )
@@ -252,6 +257,14 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     if isinstance(machine.bodies, ElasticGears):
         return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
     return machine_with_layout
+
+
+def _rolling_alone(line: DriveLine, layout: Layout) -> DriveLine:
+    """Return the drive line of a layout with the shafts on rolling bearings alone, whose pinions do not
+    tilt.
+    """
+    seats = {i: replace(line.seats[i], tilt_inertia=None) for i in line.rolling}
+    return DriveLine(layout, seats, {})
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:

@@ -2,25 +2,27 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from string import ascii_uppercase
 
 import numpy as np
 import pandas as pd
 
-from facegear.bearings.elements import AnyBearing
-from facegear.bearings.equilibrium import BearingState, state_at
 from facegear.bearings.life import BASIS, DutyLife, Lubrication, life_together, rate_duty
 from facegear.bearings.response import element_loads
-from facegear.machine.flanks import NO_LOAD
+from facegear.machine.placed_bearings import PlacedBearing
 from facegear.machine.statics import Equilibria
-from facegear.rigid_body import MOTIONS
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
 """Names of the five motions of an inner ring."""
+
+
 MEAN, WHOLE = "mean", "all"
 """Label of the load under the machine's own torques, and of the whole duty cycle, in column `bin`."""
+
+
 ALL_BEARINGS = "all bearings"
 """Name in column `pinion` of the rows on the life of all bearings together."""
+
+
 LOAD_COLUMNS = (
     *("pinion", "bearing", "bin", "torque_n_m"),
     *("x_n", "y_n", "z_n", "tilt_x_n_m", "tilt_y_n_m", "radial_n"),
@@ -29,84 +31,34 @@ LOAD_COLUMNS = (
     *("inner_pressure_mpa", "outer_pressure_mpa", "least_angle_deg", "largest_angle_deg", "static_safety"),
 )
 """Columns of loads: of the shaft on the bearing, motion of its inner ring, and its hardest element."""
+
+
 LOAD_FINITE = ("torque_n_m", "x_n", "radial_n", "x_um", "tilt_y_urad", "zone_deg", "inner_pressure_mpa")
 """Columns of loads that are finite and not empty."""
+
+
 STIFFNESS_COLUMNS = ("pinion", "bearing", "bin", "torque_n_m", "motion", *MOTION_NAMES, "change")
 """Columns of stiffness, N/m, N/rad and N m/rad; `change` is the diagonal entry over that under the mean
 load, less 1."""
+
+
 LIFE_COLUMNS = (
     *("pinion", "bearing", "bin", "torque_n_m", "speed_rpm", "hours", "load_rating_n"),
     *("equivalent_load_n", "reference_load_n", "l10_million", "l10r_million", "modified_million"),
     *("l10_hours", "l10r_hours", "modified_hours", "damage_share", "required_hours", "is_enough", "basis"),
 )
 """Columns of lives; rows of the whole duty cycle have hours alone."""
+
+
 CURVE_COLUMNS = (
     *("pinion", "bearing", "load_fraction", "torque_n_m"),
     *("radial_n", "radial_stiffness_n_per_m", "axial_stiffness_n_per_m", "zone_deg", "largest_pressure_mpa"),
 )
 """Columns of a bearing over the machine's torque; the radial stiffness is that along the radial load."""
+
+
 CURVE_FINITE = ("load_fraction", "radial_n", "radial_stiffness_n_per_m", "zone_deg")
 """Columns of a bearing over torque that are finite and not empty."""
-
-
-@dataclass(frozen=True, eq=False)
-class PlacedBearing:
-    """A rolling bearing of a machine.
-
-    Attributes
-    ----------
-    key
-        Key of its section in the config, for refusals.
-    pinion, number
-        Number of the pinion in the layout, and of the bearing on its shaft.
-    name
-        Name of the pinion.
-    bearing
-        The bearing.
-    load_rating, fatigue_load_limit
-        C and C_u of a catalogue, N; None where not given.
-    shoulder
-        Largest contact angle that its shoulder allows, rad; None where not given.
-    """
-
-    key: str
-    pinion: int
-    number: int
-    name: str
-    bearing: AnyBearing
-    load_rating: float | None
-    fatigue_load_limit: float | None
-    shoulder: float | None
-
-    @property
-    def letter(self) -> str:
-        """Letter of the bearing on its shaft, A being the first."""
-        return ascii_uppercase[self.number]
-
-    def state(self, at_rest: Equilibria, position: int = 0) -> BearingState:
-        """Return the state of the bearing at an equilibrium of the machine.
-
-        A bearing that carries nothing may stand anywhere in its clearance, also where it just touches: it is
-        taken where it was assembled, if it carries nothing there.
-
-        Parameters
-        ----------
-        at_rest : Equilibria
-            Equilibria of the machine.
-        position : int
-            Number of the equilibrium.
-
-        Returns
-        -------
-        BearingState
-            The state.
-        """
-        loads, largest = at_rest.shafts[self.pinion], float(at_rest.flank_forces[position].max())
-        if float(np.abs(loads.forces[position, self.number]).max()) <= NO_LOAD * largest:
-            assembled_state = state_at(self.bearing, np.zeros(MOTIONS))
-            if not assembled_state.force.any():
-                return assembled_state
-        return state_at(self.bearing, loads.rings[position, self.number])
 
 
 @dataclass(frozen=True, eq=False)

@@ -284,8 +284,8 @@ def _prismatic_feet(
     change = (fillet.gamma[after] - fillet.gamma[before]) / length
     for step in range(STEPS_ON_CIRCLES + 1):
         surface = fillet_points(design, gamma, y)
-        place, normal = (part[:, [0, 2]] * [1.0, -1.0] for part in (surface.position, surface.normal))
-        away, tangent = section[:, :2] - place, normal[:, ::-1] * [1.0, -1.0]
+        curve_point, normal = (part[:, [0, 2]] * [1.0, -1.0] for part in (surface.position, surface.normal))
+        away, tangent = section[:, :2] - curve_point, normal[:, ::-1] * [1.0, -1.0]
         apart = np.sum(away * normal, axis=1)
         if step < STEPS_ON_CIRCLES:
             along = np.sum(away * tangent, axis=1) * np.sign(np.sum(chord * tangent, axis=1))

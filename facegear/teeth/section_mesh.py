@@ -12,7 +12,7 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.teeth.curvature import smallest_radius
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.section_outline import BOTTOM, LEFT, RIGHT, TOP, Outline
+from facegear.teeth.section_outline import BOTTOM, TOP, Outline
 from facegear.teeth.section_topology import HalfSection, coarsening_levels, depth_rows, half_section
 
 THINNED = 2
@@ -60,8 +60,9 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     scale = outline.design.pinion_tip_radius if is_pinion else float(np.mean(outline.planes))
     lengths = {name: _length(outline, name, scale) for name in ("flank", "fillet", "root_land")}
     floor = _floor_height(outline)
-    halfway = [outline.points(side, "flank", np.array([0.5]))[0] for side in (RIGHT, LEFT)]
-    depth = scale * float(np.mean((halfway[RIGHT] + halfway[LEFT]) / 2))
+    sides = outline.different_sides
+    halfway = [outline.points(side, "flank", np.array([0.5]))[0] for side in sides]
+    depth = scale * float(np.mean(halfway))
     levels = coarsening_levels(sizes.profile, sizes.thickness, depth)
 
     lower = max(1, round(lengths["fillet"] / 2 / (sizes.fillet or sizes.profile)))
@@ -145,7 +146,7 @@ def _length(outline: Outline, segment: str, scale: float) -> float:
     the radius `scale` (m).
     """
     lengths = []
-    for side in (RIGHT, LEFT):
+    for side in outline.different_sides:
         angle, height = outline.points(side, segment, np.linspace(0, 1, 65))
         steps = np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0))
         lengths.append(float(np.max(steps.sum(axis=0))))
@@ -252,8 +253,8 @@ def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array, side: int) ->
     """
     wall, floor_columns = plan.half.columns
     steps = np.array([0.0, plan.breaks["flank"][1], float(wall)])
-    ends = [outline.points(number, "flank", BOTTOM)[1][0] for number in (RIGHT, LEFT)]
-    under = (ends[RIGHT] + ends[LEFT]) / 2
+    ends = [outline.points(number, "flank", BOTTOM)[1][0] for number in outline.different_sides]
+    under = np.mean(ends, axis=0)
     heights = outline.tip_height, under - 0.3 * (under - plan.floor_height), plan.floor_height
     tip_segment = "chamfer" if outline.has_chamfer else "flank"
     breaks = (tip_segment, TOP), ("flank", BOTTOM), ("fillet", BOTTOM)

@@ -46,6 +46,11 @@ class Outline:
         return right, build(self.design.mirror_family, self.planes)
 
     @property
+    def different_sides(self) -> tuple[int, ...]:
+        """Numbers of the sides that are no mirror images of each other: the right one alone, or both."""
+        return (RIGHT,) if self.design.is_symmetric else (RIGHT, LEFT)
+
+    @property
     def half_pitch(self) -> float:
         """Half of the angular pitch of the body, rad."""
         teeth = self.design.pinion.teeth if self.body == "pinion" else self.design.face_gear.teeth
@@ -90,6 +95,8 @@ class Outline:
         (n, planes) array
             rad; 0 where both sides are mirror images.
         """
+        if self.design.is_symmetric:
+            return np.zeros((len(fraction), len(self.planes)))
         right, left = (self._surface(number, segment, fraction)[0] for number in (RIGHT, LEFT))
         return (right - left) / 2 if side == RIGHT else (left - right) / 2
 
@@ -176,10 +183,10 @@ def tooth_fill(design: PairDesign) -> tuple[float, float]:
     part = weights * radius * depth
     part /= part.sum()
     volume, moment = 0.0, 0.0
-    for side in (RIGHT, LEFT):
+    for side in outline.different_sides:
         segments = [outline.points(side, name, fractions) for name in ("flank", "fillet")]
         angle, height = (np.concatenate(values) for values in zip(*segments, strict=True))
-        filled_share = (angle[1:] + angle[:-1]) / (4.0 * outline.half_pitch)
+        filled_share = (angle[1:] + angle[:-1]) / (2.0 * outline.half_pitch * len(outline.different_sides))
         above = (height - outline.root_height) / depth
         steps, middle = above[:-1] - above[1:], 0.5 * (above[1:] + above[:-1])
         side_volume, side_moment = (

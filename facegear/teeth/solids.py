@@ -167,7 +167,9 @@ def _pinion_halves(design: PairDesign, profile: int, width: int) -> tuple[HalfTo
     """
     half, few = design.pinion.width / 2, (profile - 1) // 4 + 1
     y = np.linspace(design.middle - half, design.middle + half, width)
-    sides = [_pinion_side(side_design, y, profile) for side_design in (design, mirror_teeth(design))]
+    right, left = design, mirror_teeth(design)
+    sides = [_pinion_side(right, y, profile)]
+    sides.append(sides[0] if left == right else _pinion_side(left, y, profile))
     tips, roots = ([_polar_lines(side[end][end]) for side in sides] for end in (0, -1))
     pitch = np.array([pi / design.pinion.teeth, 0.0, 0.0])
     halves = []
@@ -258,7 +260,9 @@ def _gear_halves(design: PairDesign, profile: int, width: int) -> tuple[HalfToot
     gear, step = design.face_gear, np.linspace(0.0, 1.0, (profile - 1) // 4 + 1)[:, None]
     radius = np.linspace(gear.inner_radius, gear.outer_radius, width)
     outline = Outline(design, "face_gear", radius)
-    sides = [_gear_side(side_design, radius, profile) for side_design in (mirror_teeth(design), design)]
+    right, left = mirror_teeth(design), design
+    sides = [_gear_side(right, radius, profile)]
+    sides.append(sides[0] if left == right else _gear_side(left, radius, profile))
     tips, roots = ([cylindrical(side[end][end])[0] for side in sides] for end in (0, -1))
     flat, back = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, outline.back_height])
     halves = []

@@ -132,7 +132,7 @@ def own_answer(request: PairRequest) -> Answer:
     pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
     return Answer(
         torque=request.torque,
-        turn=result.ste / pair.design.pinion_base_radius,
+        turn=result.ste / pair.design.normal_arm,
         pressure=pressure,
         pinion_root=pinion.root("pinion", spot.on_pinion),
         gear_root=gear.root("face_gear", spot.on_gear),

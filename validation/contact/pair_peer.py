@@ -4,7 +4,7 @@ One tooth of each gear, cut out and held at the cuts, on the same nodes: our sol
 hexahedra) and Kratos (8-node ones). The reference is ours with the strip of contact resolved.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,7 +47,7 @@ Row = dict[str, float | str]
 
 
 def middle(design: PairDesign, radius: float | None = None) -> PairDesign:
-    """Return the part of the pair's face about a radius alone.
+    """Return the part of the pair's face about a radius alone: the same teeth, shorter.
 
     Parameters
     ----------
@@ -64,10 +64,11 @@ def middle(design: PairDesign, radius: float | None = None) -> PairDesign:
     face, gear = SLICE * design.module, design.face_gear
     radius = design.mean_radius if radius is None else radius
     ends = radius - face / 2, radius + face / 2
+    shift = float(design.family.shift(radius))
     return replace(
         design,
         face_gear=replace(gear, inner_radius=ends[0], outer_radius=ends[1]),
-        pinion=replace(design.pinion, width=0.75 * face),
+        pinion=replace(design.pinion, width=0.75 * face, middle=radius, profile_shift=shift),
     )
 
 
@@ -78,6 +79,8 @@ def pair_peer_study(
     levels: Mapping[str, MeshSizes],
     folder: Path,
     threads: int,
+    position: float = POSITION,
+    kratos_levels: Collection[str] | None = None,
 ) -> pd.DataFrame:
     """Compare three programs, a row for each program and mesh from the coarsest to the finest.
 
@@ -98,6 +101,10 @@ def pair_peer_study(
         Folder of the programs' files.
     threads : int
         Number of threads.
+    position : float
+        Position of the pair, fraction of a pitch.
+    kratos_levels : collection of str or None
+        Levels that Kratos solves, too; None for all.
 
     Returns
     -------
@@ -109,9 +116,11 @@ def pair_peer_study(
     FacegearError
         If a program is missing, fails, or does not come to the torque.
     """
-    progress = Progress("pair by three programs", 1 + 4 * len(levels))
+    pairs = {level: PairBodies(design, sizes, materials, position) for level, sizes in levels.items()}
+    kratos_levels = levels if kratos_levels is None else kratos_levels
+    progress = Progress("pair by three programs", 1 + 3 * len(levels) + len(kratos_levels))
     rows = []
-    for row in _rows(design, materials, torque, levels, folder, threads):
+    for row in _rows(pairs, torque, kratos_levels, folder, threads):
         rows.append(row)
         progress.step()
     table = pd.DataFrame(rows)
@@ -176,14 +185,12 @@ def posed_peer_study(
 
 
 def _rows(
-    design: PairDesign,
-    materials: tuple[Material, Material],
+    pairs: Mapping[str, PairBodies],
     torque: float,
-    levels: Mapping[str, MeshSizes],
+    kratos_levels: Collection[str],
     folder: Path,
     threads: int,
 ) -> Iterator[Row]:
-    pairs = {level: PairBodies(design, sizes, materials, POSITION) for level, sizes in levels.items()}
     finest = list(pairs)[-1]
     plain = Refinement()
     yield _solve_ours(
@@ -194,7 +201,8 @@ def _rows(
         yield row
         yield _solve_ours(pair, level, "facegear, 8-node", torque, plain, folder, threads)[0]
         yield _calculix(pair, level, our_answer, folder, threads)
-        yield _kratos(pair, level, our_answer, folder / f"kratos_{level}", threads)
+        if level in kratos_levels:
+            yield _kratos(pair, level, our_answer, folder / f"kratos_{level}", threads)
 
 
 def _solve_ours(
@@ -288,14 +296,14 @@ def _read(pair: PairBodies, torque: float, turn: float, displacement: Array, pre
 def _row(
     pair: PairBodies, level: str, program: str, dof: int, answer: Answer, seconds: float, gigabytes: float
 ) -> Row:
-    base = pair.design.pinion_base_radius
+    arm = pair.design.normal_arm
     return {
         "level": level,
         "program": program,
         "dof": dof,
         "torque_n_m": answer.torque,
         "turn_rad": answer.turn,
-        "stiffness_n_per_um": 1e-6 * answer.torque / (base**2 * answer.turn),
+        "stiffness_n_per_um": 1e-6 * answer.torque / (arm**2 * answer.turn),
         "pressure_mpa": 1e-6 * answer.pressure,
         "pinion_root_mpa": 1e-6 * answer.pinion_root,
         "gear_root_mpa": 1e-6 * answer.gear_root,

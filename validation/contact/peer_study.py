@@ -93,7 +93,7 @@ def peer_study(
             start = time.perf_counter()
             result = pair.solve(position, tuple(part * torque for part in LOADS))[-1]
             seconds = preparation / AMORTISED + (time.perf_counter() - start) / len(LOADS)
-            turn = result.ste / design.pinion_base_radius
+            turn = result.ste / design.normal_arm
             exact = float(fine[position](turn))
             for slave in BUILDERS:
                 deck = folder / f"{name}_{round(100 * position):03d}_{slave}.inp"
@@ -127,5 +127,5 @@ def peer_study(
 def _torque_by_turn(pair: SectorPair, position: float, torque: float) -> PchipInterpolator:
     """Torque (N m) against the turn (rad) of the pinion around `torque`."""
     torques = tuple(part * torque for part in AROUND)
-    turns = [result.ste / pair.flanks.design.pinion_base_radius for result in pair.solve(position, torques)]
+    turns = [result.ste / pair.flanks.design.normal_arm for result in pair.solve(position, torques)]
     return PchipInterpolator(turns, torques, extrapolate=False)

@@ -221,3 +221,24 @@ rule pair_peer:
         code=code("validation/scripts/pair_peer.py"),
     script:
         "../scripts/pair_peer.py"
+
+
+rule family_peer:
+    "A helical and a tapered pair by three programs"
+    input:
+        "config/helical.yaml",
+        "config/tapered.yaml",
+        "config/concentric.yaml",
+    output:
+        table="results/{case}/benchmarks/family_peer.csv",
+        manifest="results/{case}/benchmarks/family_peer.provenance.json",
+    log:
+        "results/{case}/logs/family_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/family_peer.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        code=code("validation/scripts/family_peer.py"),
+    script:
+        "../scripts/family_peer.py"

@@ -35,6 +35,7 @@ rule peers:
                 "cyclic_teeth",
                 "kratos_hertz",
                 "pair_peer",
+                "family_peer",
                 "shaft_peer",
             ],
         ),

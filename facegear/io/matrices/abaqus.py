@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from facegear.io.matrices.labelled_matrix import (
     LabelledMatrix,
@@ -121,7 +121,7 @@ def read_substructure(path: Path, quantity: str) -> LabelledMatrix | None:
     matrix[np.tril_indices(size)] = values
     matrix += np.tril(matrix, -1).T
     node, direction = np.array(rows, np.int64).T
-    return LabelledMatrix(node, direction, sparse.csc_array(matrix))
+    return LabelledMatrix(node, direction, scipy.sparse.csc_array(matrix))
 
 
 def _listed_nodes(lines: list[str]) -> list[int]:

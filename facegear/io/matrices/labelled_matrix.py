@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from facegear.arrays import Array, Integers
 from facegear.errors import plain_reason
@@ -98,7 +98,7 @@ class LabelledMatrix:
                 f"it has dof {self.direction[first]} of node {self.node[first]}, which the stiffness lacks"
             )
         coordinates = self.matrix.tocoo()
-        return sparse.csc_array(
+        return scipy.sparse.csc_array(
             (coordinates.data, (at[coordinates.row], at[coordinates.col])),
             shape=(reference.size, reference.size),
         )
@@ -149,14 +149,14 @@ def symmetric(row: Integers, column: Integers, values: Array, size: int, triangl
     sparse array (n, n)
         One triangle is mirrored.
     """
-    matrix = sparse.coo_array((values, (row, column)), shape=(size, size)).tocsc()
+    matrix = scipy.sparse.coo_array((values, (row, column)), shape=(size, size)).tocsc()
     if triangle is None:
-        pattern = sparse.coo_array((np.ones(row.size), (row, column)), shape=(size, size)).tocsr()
+        pattern = scipy.sparse.coo_array((np.ones(row.size), (row, column)), shape=(size, size)).tocsr()
         pattern.setdiag(0.0)
         triangle = not pattern.multiply(pattern.T).count_nonzero()
     if not triangle:
         return matrix
-    return (matrix + matrix.T - sparse.diags_array(matrix.diagonal())).tocsc()
+    return (matrix + matrix.T - scipy.sparse.diags_array(matrix.diagonal())).tocsc()
 
 
 def read_lines(path: Path) -> list[str]:

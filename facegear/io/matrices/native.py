@@ -5,7 +5,7 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
-from scipy import io, sparse
+import scipy
 
 from facegear.arrays import Array, Arrays, Integers
 from facegear.io.matrices.labelled_matrix import LabelledMatrix, MatrixFault, read_lines, read_numbers
@@ -60,7 +60,7 @@ def read_matrix_market(path: Path, dofs: tuple[Integers, Integers]) -> LabelledM
         For a file that is not valid.
     """
     try:
-        matrix = io.mmread(path)
+        matrix = scipy.io.mmread(path)
     except (ValueError, OSError) as error:
         raise MatrixFault(f"it is no Matrix Market file ({str(error)[:120]})") from None
     return _whole(matrix, dofs)
@@ -214,4 +214,4 @@ def _whole(matrix: Array, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
         raise MatrixFault(
             f"it has shape {' x '.join(map(str, matrix.shape))}; as many columns as rows are needed"
         )
-    return LabelledMatrix(*dofs, sparse.csc_array(matrix, dtype=float))
+    return LabelledMatrix(*dofs, scipy.sparse.csc_array(matrix, dtype=float))

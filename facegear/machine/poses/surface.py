@@ -38,6 +38,8 @@ INSIDE, BEYOND = 0.32, 0.12
 LEANING = float(np.radians(0.05))
 """Error of the shaft angle (rad) to either side that the nodes cover where bodies tilt or bend."""
 
+NO_TORQUE = 1e-9
+"""Torque over the smallest of the nodes, dimensionless, that stands for less: zero has no logarithm."""
 SURFACE_ARRAYS = {
     "pair": (None,),
     "errors": (3,),
@@ -217,6 +219,7 @@ class PoseSurface:
             In the unit of the quantity: N/m, m or Pa.
         """
         nodes = self.nodes
+        torque = max(torque, NO_TORQUE * float(nodes.torques[0]))
         light = min(float(np.log(torque / nodes.torques[0])), 0.0)
         weights = self.torque_weights(np.log(torque) - light)
         if quantity == STIFFNESS:

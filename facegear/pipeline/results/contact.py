@@ -144,7 +144,11 @@ class ContactResult(Result):
     def by_flank(self) -> pd.DataFrame:
         """`by_torque` for drive and back flank of the upper and the lower gear, with the errors of each.
 
-        They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
+        They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank, and
+        for teeth that are not symmetric. Teeth other than spur ones have more columns: load_share_max, the
+        mean force and moment of the pinion on the gear about the crossing of the nominal axes (force_x_n to
+        moment_z_n_m), and pinion_axial_n, the force on the pinion outwards along its axis; a back flank is
+        seen in a mirror, x reversed.
 
         Columns: gear, flank, offset_um, shaft_angle_error_deg, gear_axial_um, torque_n_m, positions,
         k_average_mean_n_per_m, k_average_min_n_per_m, k_average_max_n_per_m, k_local_mean_n_per_m,

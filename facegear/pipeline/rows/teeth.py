@@ -85,6 +85,7 @@ ROWS = (
             "tooth_pair": ComputedValue(arguments.without_gaps, ("tooth_pair",)),
             "mesh": "mesh",
             "contact": ComputedValue(arguments.without_loads, ("tooth_pair", "mesh", "contact")),
+            "gears": ComputedValue(arguments.gears_with_bodies, ("tooth_pair", "transmission")),
         },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:ARRAY_SHAPES")},
         wildcards=BODY,

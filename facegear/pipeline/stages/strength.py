@@ -13,7 +13,7 @@ from facegear.build.machine import MachineInputs
 from facegear.build.strength import duty_bins, rating_request
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ContactSetup, ToothPair, contact_setup, pair
-from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of
+from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of, gears_of
 from facegear.errors import ConfigError, FacegearError
 from facegear.machine.flanks import flank_places
 from facegear.machine.static_gears import at_rest
@@ -91,7 +91,9 @@ def root_stress(
     setup = contact_setup(tooth_pair, mesh, contact)
     design, bodies = setup.pair.design, (every_flank_from_arrays(pinion), every_flank_from_arrays(face_gear))
     pairs = list(zip(*bodies, strict=True))
-    of_variants = [flanks_of(variant, design, pairs) for variant in distinct_pairs(design)[0]]
+    of_variants = [
+        flanks_of(variant, design, pairs) for variant in distinct_pairs(design, gears_of(design, pairs))[0]
+    ]
     flanks: list[dict[Body, GearFlank]] = [dict(zip(BODIES, pair, strict=True)) for pair in of_variants]
     roots = {body: passing(body, flank, loads) for body, flank in flanks[0].items()}
     errors = _face_errors(setup, roots)

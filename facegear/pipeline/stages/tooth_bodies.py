@@ -1,5 +1,6 @@
 """Stages of the bodies of the teeth: meshes, their condensed compliance, and files for CAD."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -171,7 +172,9 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
     return path
 
 
-def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> Outcome:
+def compliance(
+    body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact, gears: Sequence[str]
+) -> Outcome:
     """Compute the condensed compliance of one body's flanks by finite elements, with the gauges of its
     fillets.
 
@@ -188,6 +191,8 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
         Section `mesh` of the config.
     contact : Contact
         Section `contact` of the config.
+    gears : Sequence[str]
+        Face gears that flanks are needed of: `upper`, and `lower` where it is another gear.
 
     Returns
     -------
@@ -201,7 +206,7 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
         For a sector with more teeth than the gear, and for a mesh turned inside out.
     """
     setup = contact_setup(tooth_pair, mesh, contact)
-    flanks = gear_flanks(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+    flanks = gear_flanks(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan, gears)
     flank = flanks[0]
     teeth = count_noun(len(flank.compliance.neighbour_blocks), "tooth", "teeth")
     summary = f"{count_noun(len(flank.compliance.loaded_tooth), 'flank node')}, {teeth} coupled"

@@ -119,13 +119,15 @@ def test_a_stage_that_takes_spur_teeth_alone_refuses_others_by_key(changes, line
     assert not refused_keys(SPUR_ONLY, gearbox.values["tooth_pair"])
 
 
-def test_the_door_refuses_before_any_work():
+def test_the_door_refuses_before_any_work(monkeypatch):
+    monkeypatch.setitem(SPUR_ONLY, "compliance", ALL_KINDS)
     gearbox = facegear.load(make_config("P1"), results=None)
-    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage compliance"):
-        gearbox.contact()
+    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage displaced_contact"):
+        gearbox.displaced_contact()
 
 
-def test_the_check_of_a_config_names_the_stages_that_refuse():
+def test_the_check_of_a_config_names_the_stages_that_refuse(monkeypatch):
+    monkeypatch.setitem(SPUR_ONLY, "contact", ALL_KINDS)
     values = make_config("P1")
     failures = check_config(config_of(values), values).failures
     assert [

@@ -21,8 +21,12 @@ from facegear.contact.gear_flank import (
 )
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Sector
-from facegear.contact.summary import BY_FLANK_COLUMNS
+from facegear.contact.pattern import pattern_margins
+from facegear.contact.summary import BY_FLANK_COLUMNS, WRENCH_MEANS
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
+from facegear.contact.tooth_errors import loaded_curves
+from facegear.teeth.flank_shapes import DeviationGrid
+from facegear.teeth.limits import radius_limits
 from facegear.teeth.placement import mirror_design, nominal_pairs
 
 SIZES, CUTS = COARSE
@@ -48,7 +52,7 @@ def bodies_of():
 @pytest.mark.parametrize("name", NAMES)
 def test_both_flanks_balance_their_torque_with_the_axial_force_of_their_helicoids(bodies_of, name):
     design = public_pair(name)
-    found = contact_analysis(design, (STEEL, STEEL), bodies_of(name), PLAN, gears=UPPER)
+    found = contact_analysis(design, (STEEL, STEEL), bodies_of(name), PLAN)
     assert len(found.models) == (1 if design.is_symmetric else 2)
     for model, (results, pressure), table in zip(found.models, found.results, found.wrenches, strict=True):
         flank = model.design.family.pinion_flanks[0]
@@ -59,7 +63,7 @@ def test_both_flanks_balance_their_torque_with_the_axial_force_of_their_helicoid
         assert error.max() < 0.02
         for loads in pressure.loads:
             assert np.isfinite(loads.pressure[loads.edge == 0]).all()
-    assert list(found.by_flank.columns) == list(BY_FLANK_COLUMNS)
+    assert list(found.by_flank.columns) == [*BY_FLANK_COLUMNS, "load_share_max", *WRENCH_MEANS]
     assert len(found.by_flank) == 4 * len(PLAN.torques)
 
 
@@ -74,6 +78,25 @@ def test_mirrored_pair_has_the_compliance_of_the_coast_flanks_on_the_same_mesh(b
         mirrored = bodies_of(name)[1][number].compliance
         scale = mirrored.loaded_tooth.max()
         np.testing.assert_allclose(coast.loaded_tooth, mirrored.loaded_tooth, rtol=1e-7, atol=1e-8 * scale)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_more_material_on_every_tooth_comes_early_by_as_much_and_patterns_know_their_edges(bodies_of, name):
+    design, bodies = public_pair(name), bodies_of(name)
+    found = contact_analysis(design, (STEEL, STEEL), bodies, PLAN)
+    sides = {body: flank.side for body, flank in zip(BUILDERS, bodies[0], strict=True)}
+    grids = {
+        "pinion": DeviationGrid((-0.02, 0.02), (0.0, 0.05), ((1e-6, 1e-6), (1e-6, 1e-6))),
+        "face_gear": DeviationGrid((0.1, 0.3), (0.0, 0.02), ((2e-6, 2e-6), (2e-6, 2e-6))),
+    }
+    curves = loaded_curves(design, sides, found.loads, 500.0, {body: 3 * (grids[body],) for body in grids})
+    # teeth are no longer rigid where fillets take a part of the torque, with other lever arms
+    assert curves["pinion"] == pytest.approx(np.full(9, 1e-6), rel=1e-3)
+    assert curves["face_gear"] == pytest.approx(np.full(9, 2e-6), rel=1e-3)
+    margins = pattern_margins(found.pressure[0], design, 500.0)
+    limits = radius_limits(design)
+    assert margins.undercut >= design.face_gear.inner_radius - limits.inner - 1e-12
+    assert 0.0 <= margins.pinion_tip < design.module
 
 
 def test_stored_flanks_of_all_pairs_come_back(bodies_of):
@@ -98,7 +121,7 @@ SMALL = {
     "offset": {"offset": 0.1},
     "coast flank": {"coast_pressure_angle": 1.0},
 }
-"""What each kind of teeth changes in a spur pair, per rad of smallness."""
+"""Changes that make each kind of teeth of a spur pair, per rad of smallness; of the offset in m per rad."""
 
 
 @pytest.mark.parametrize("kind", SMALL)

@@ -7,12 +7,14 @@ import pytest
 from contact_bodies import STEEL, pair_design
 from references import against, agrees
 
+from facegear.contact import root_gauges as root_gauges_module
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import HEIGHTS, root_gauges, section_errors
 from facegear.contact.teeth import elastic_tooth
+from facegear.sparse.matrices import solve_sparse
 from facegear.strength.root_stress import down_the_fillet
 from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 from validation.contact.twin import slab_tooth
@@ -76,3 +78,19 @@ def test_an_error_is_reported_at_every_place_along_the_face():
     assert gauges.error.shape == gauges.along("face_gear").shape
     assert np.diff(gauges.error[-4:]).min() > 0.0  # the fillet sharpens outwards
     assert gear.at(gear.along) == pytest.approx(gear.error)
+
+
+@pytest.mark.parametrize(("body", "into_tooth"), [("pinion", -1.0), ("face_gear", 1.0)])
+def test_an_error_is_that_of_the_flanks_that_mesh_when_the_pinion_drives(body, into_tooth, monkeypatch):
+    """The gear's right flanks were loaded, which is the same for symmetric teeth alone."""
+    seen = []
+
+    def solve(matrix, loads):
+        seen.append(loads)
+        return solve_sparse(matrix, loads)
+
+    monkeypatch.setattr(root_gauges_module, "solve_sparse", solve)
+    errors(body, MeshSizes(3e-3, 6e-3, 6e-3))
+    assert seen
+    for loads in seen:
+        assert (into_tooth * loads[::2].sum(axis=0) > 0.5).all()

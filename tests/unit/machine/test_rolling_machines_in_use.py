@@ -10,6 +10,7 @@ from rolling_machines import S1, machine_on
 import facegear
 from facegear.build.machine import MachineInputs
 from facegear.errors import ConfigErrors
+from facegear.machine.layout import Role
 from facegear.machine.machine import Damping
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.static_gears import at_rest
@@ -17,6 +18,7 @@ from facegear.machine.statics import bearing_forces, mean_equilibrium
 from facegear.motion.bearing_forces import bearing_history, shaft_bearing_history
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.schema.changes import add_changes, movable, variable_part
+from facegear.sharing import sensitivity
 from facegear.sharing.hunting import hunting_cycle
 
 EXAMPLE = Path(__file__).parents[3] / "config" / "bearings.yaml"
@@ -61,6 +63,15 @@ def test_the_hunting_cycle_knows_the_load_of_every_position(machine):
     assert run.at_rest.residual.max() < 1e-11
     loads = run.at_rest.shafts[2].forces[:, 0, :2]
     assert np.ptp(np.hypot(*loads.T)) > 10.0
+
+
+def test_the_scan_over_bearing_stiffness_keeps_the_other_rolling_bearings(machine):
+    """They were springs without their load, on which idlers carried nothing."""
+    compared = sensitivity._with_kinematics(at_rest(machine), machine.layout.kinematics)
+    forces = [mean_equilibrium(at_rest(each)).forces[0] for each in (machine, compared)]
+    assert np.allclose(*forces, rtol=0, atol=1e-7 * np.abs(forces[0]).max())
+    changed = sensitivity._with_bearings(compared, (Role.INPUT,), 1e9)
+    assert changed.drive_line.rolling == compared.drive_line.rolling[:2] + compared.drive_line.rolling[4:]
 
 
 def test_clearance_bore_and_preload_are_numbers_that_tolerances_may_move(example):

@@ -4,12 +4,15 @@ from string import ascii_uppercase
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
+from three_pinions import TEXT
 
 from facegear.bearings.shaft import find_shaft_equilibrium
-from facegear.build.rolling import rolling_shaft
+from facegear.build.rolling import nominal_state, rolling_shaft
 from facegear.errors import ConfigErrors
 from facegear.schema.base import parse
 from facegear.schema.shafts import ShaftSection
+from facegear.schema.transmission import Transmission
 
 BALL, ROLLER = {"card": "deep_groove_6210"}, {"card": "cylindrical_roller_nu210"}
 AHEAD = {"card": "angular_contact_7208", "loaded_by": "+z"}
@@ -94,6 +97,7 @@ REFUSALS = [
     ((AHEAD, AHEAD), {}, 'loaded_by = "+z": must be the opposite'),
     ((AHEAD, ROLLER), {}, "bearings[0].rolling.loaded_by"),
     (({**SPRING, "position_um": {"x": 3, "y": 0}}, BALL), {}, "bearings[0].position_um"),
+    (({"rolling": BALL, "position_um": {"x": 0, "y": 400}}, BALL), {}, "smaller than 0.02 element_diam"),
     (({"radial_n_per_m": 1e8, "rolling": BALL}, BALL), {}, "radial_n_per_m = 100000000.0: must be left out"),
     ((BALL, BALL), {"preload": {"bearings": ["A", "C"], "axial_um": 3}}, 'preload.bearings = "C"'),
     ((BALL, BALL), {"preload": {"bearings": ["A", "A"], "axial_um": 3}}, "two different letters"),
@@ -118,3 +122,31 @@ def test_bearings_that_do_not_hold_the_shaft_are_refused_in_one_line(bearings, m
 
 def test_letters_name_as_many_bearings_as_a_shaft_may_have():
     assert len(ascii_uppercase) > ShaftSection.model_fields["bearings"].metadata[0].max_length
+
+
+def test_bearings_far_too_small_for_the_torque_have_a_state_to_begin_with():
+    tiny = {"type": "deep_groove_ball", "elements": 7, "element_diameter_mm": 0.5, "pitch_diameter_mm": 30}
+    made = parse(ShaftSection, shaft(BALL, BALL), "the shaft")
+    small = parse(ShaftSection, shaft({"rolling": tiny}, {"rolling": tiny}), "the shaft")
+    assert nominal_state(made, 1e4).pinion_load[0] == pytest.approx(1e4)
+    assert 0.0 <= nominal_state(small, 1e7).pinion_load[0] < 1e7
+
+
+def transmission(**changes):
+    values = YAML(typ="safe").load(TEXT)
+    values["pinion"] = {**values["pinion"], **changes.pop("pinion", {})}
+    return parse(Transmission, {**values, "shafts": {"one": shaft(BALL, BALL)}, **changes})
+
+
+def test_a_clearance_of_the_pinion_beside_rolling_bearings_is_refused():
+    assert transmission().shafts["one"].is_rolling
+    with pytest.raises(ConfigErrors) as refusal:
+        transmission(pinion={"clearance_um": 10.0})
+    (line,) = str(refusal.value).splitlines()
+    assert "pinion.clearance_um = 10.0" in line and "0 beside rolling, whose clearance_diametral_um" in line
+
+
+def test_a_bearing_stiffness_of_the_pinion_beside_rolling_bearings_is_refused():
+    stiffness = {"x": 1e8, "y": 1e8, "z": 0.0}
+    with pytest.raises(ConfigErrors, match=r"single_pinions\.one\.bearing_stiffness_n_per_m.*left out"):
+        transmission(single_pinions={"one": {"bearing_stiffness_n_per_m": stiffness}})

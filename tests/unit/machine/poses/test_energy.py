@@ -1,6 +1,7 @@
 """Law, force and reactions of a mesh over its pose come from one energy."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import gear_bodies
 import numpy as np
@@ -12,6 +13,8 @@ from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
+import facegear
+from facegear.build.machine import MachineInputs
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.flanks import flank_edges
 from facegear.machine.kinematics import GEOMETRIC
@@ -32,6 +35,9 @@ from validation.poses.measure import ASSEMBLIES, FROZEN_REACTIONS, SURFACE, TILT
 ANGLE = float(np.radians(0.05))
 PINION_BASE = 3.75e-3 * 23 / 2 * np.cos(np.radians(25.0))
 paths, angles, torques = st.floats(0.2605, 0.2775), st.floats(-8e-4, 8e-4), st.floats(5.0, 1195.0)
+
+
+EXAMPLE = Path(__file__).parents[4] / "config" / "bearings.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -237,6 +243,25 @@ def test_shafts_that_bend_tilt_the_pinions_of_their_meshes(surface):
     ]
     assert np.abs(angles).max() > 1e-6
     np.testing.assert_allclose(result.angle, angles, rtol=1e-4, atol=1e-9)
+
+
+def test_a_mesh_without_load_has_the_stiffness_of_next_to_none(surface):
+    """It was not a number, as zero has no logarithm: idlers that float in their clearance carry nothing."""
+    path = contact_at(surface.pair, AssemblyErrors()).y
+    at_zero = surface.at(STIFFNESS, 0.0, path, 0.0)
+    assert 0.0 < at_zero == surface.at(STIFFNESS, 1e-10 * surface.nodes.torques[0], path, 0.0)
+
+
+def test_poses_of_the_teeth_follow_the_load_of_rolling_bearings(surface):
+    example = facegear.load(EXAMPLE)
+    inputs = MachineInputs.of_config(example.values, example.stiffness().content["harmonics"])
+    machine = inputs.build()
+    result = operating_pose(machine, surface)
+    at_pose, before = (mean_equilibrium(static(each)) for each in (result.machine, machine))
+    size = at_pose.flank_forces.max()
+    assert np.allclose(np.abs(at_pose.forces[0]), np.abs(result.forces), rtol=0, atol=1e-6 * size)
+    moved = at_pose.shafts[2].pinion[0] - before.shafts[2].pinion[0]
+    assert 1e-9 < np.abs(moved[:2]).max() < 1e-4
 
 
 def following_table(surface):

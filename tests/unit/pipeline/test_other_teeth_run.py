@@ -1,0 +1,114 @@
+"""Helical and tapered pairs through the chain of stages, from contact to the machine's load sharing."""
+
+from math import cos, radians, sin, tan
+
+import numpy as np
+import pytest
+from kinds_of_teeth import public_section
+
+import facegear
+from facegear.contact.summary import BY_FLANK_COLUMNS
+
+COARSE = {
+    "mesh": {"resolution": {"profile_mm": 1.4, "width_mm": 6, "thickness_mm": 4}},
+    "contact": {
+        "torques_n_m": [300, 600],
+        "positions_per_pitch": 4,
+        "refinement": {"profile": 3, "width": 1, "depth": 1},
+        "sector": {"pinion_teeth": 7, "face_gear_teeth": 7},
+        "edge_contact": False,  # edges press along other normals than the flank's
+    },
+}
+BODY = {"mass_kg": 1.2, "inertia_kg_m2": 0.002, "bearing_stiffness_n_per_m": {"x": 2e8, "y": 2e8, "z": 2e8}}
+MACHINE = {
+    "mesh_stiffness": {"torque_n_m": 400, "harmonics_kept": 1},
+    "transmission": {
+        "pinions": [
+            {"name": "engine", "role": "input", "angle_deg": 0},
+            {"name": "idler", "role": "idler", "angle_deg": 180},
+        ],
+        "pinion": BODY,
+        "face_gear": BODY | {"mass_kg": 8, "inertia_kg_m2": 0.4},
+        "damping": {"mesh_n_s_per_m": 1500, "mass_per_s": 50, "bearing_s": 2e-6},
+        "transmission_error": "from_contact",
+        "torque": {"per_input_n_m": 500, "tail_share": 0},
+    },
+    "dynamics": {"speed_rpm": 6000, "sweep": {"from_rpm": 500, "to_rpm": 9000, "points": 4}},
+}
+NAMES = ("P1", "P2")
+
+
+@pytest.fixture(scope="module")
+def gearbox_of():
+    """Machines with two gears of public designs, by name; each solves its contact once."""
+    known = {}
+
+    def gearbox(name, **pair):
+        key = name, *pair.items()
+        if key not in known:
+            section = public_section(name) | pair
+            known[key] = facegear.load(
+                {"case": "kind", "tooth_pair": section, **COARSE, **MACHINE}, results=None
+            )
+        return known[key]
+
+    return gearbox
+
+
+def axial_force(section, side):
+    """Return the closed form of the axial force on the pinion over its torque, 1/m."""
+    beta, delta, alpha = (radians(section[f"{name}_angle_deg"]) for name in ("helix", "taper", "pressure"))
+    radius = 0.5e-3 * section["pinion_teeth"] * section["module_mm"] / cos(beta)
+    return -(side * tan(beta) * cos(delta) - tan(alpha) * sin(delta) / cos(beta)) / radius
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_axial_force_of_every_flank_is_the_closed_form(gearbox_of, name):
+    gearbox = gearbox_of(name)
+    table = gearbox.contact().by_flank()
+    for flank, side in (("drive", 1), ("back", -1)):
+        rows = table[table["flank"] == flank]
+        expected = axial_force(gearbox.values["tooth_pair"], side)
+        np.testing.assert_allclose(rows["pinion_axial_n"], expected * rows["torque_n_m"], rtol=1e-9)
+    assert table["load_share_max"].between(0.4, 1.0).all()
+
+
+def test_other_hand_swaps_the_flanks(gearbox_of):
+    """Rule of the mirror: coast flanks are the drive flanks of the pair of the other hand."""
+    ours, others = (gearbox_of("P1", helix_angle_deg=beta).contact().by_flank() for beta in (15, -15))
+    quantities = [
+        "k_average_mean_n_per_m",
+        "ste_peak_to_peak_um",
+        "pressure_mpa",
+        "force_y_n",
+        "path_radius_mm",
+    ]
+    for flank, other in (("drive", "back"), ("back", "drive")):
+        mine, theirs = ours[ours["flank"] == flank], others[others["flank"] == other]
+        np.testing.assert_allclose(mine[quantities], theirs[quantities], rtol=1e-9)
+
+
+def test_spur_pairs_keep_their_table_of_flanks():
+    table = facegear.example().contact(torques=[600], positions=4).by_flank()
+    assert list(table.columns) == list(BY_FLANK_COLUMNS)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_machine_shares_its_load_with_the_stiffness_of_contact(gearbox_of, name):
+    gearbox = gearbox_of(name)
+    mean = gearbox.stiffness().table()["mean_average_n_per_m"].iloc[0]
+    by_torque = gearbox.contact().by_torque()
+    assert by_torque["k_average_mean_n_per_m"].min() < mean < by_torque["k_average_mean_n_per_m"].max()
+    torques = gearbox.statics().table().set_index("mesh")["pinion_torque_n_m"]
+    assert torques["engine/upper"] + torques["engine/lower"] == pytest.approx(500.0, abs=1e-6)
+    assert torques["idler/upper"] + torques["idler/lower"] == pytest.approx(0.0, abs=1e-6)
+    shares = gearbox.load_sharing().table().iloc[0]
+    assert 1.0 < shares["mean"] < 2.0 and shares["minimum"] < shares["mean"] < shares["maximum"]
+
+
+def test_mesh_law_has_a_table_of_each_flank_of_helical_teeth(gearbox_of):
+    gearbox = gearbox_of("P1").with_values({"mesh_stiffness.mesh_law": "load_dependent"})
+    levels = gearbox.mesh_law().table()
+    assert set(gearbox.mesh_law().arrays()["flank_variant"].ravel()) == {0, 1}
+    drive, back = (levels[levels["flank"] == flank] for flank in ("drive", "back"))
+    assert 0.9 < drive["slope_n_per_m"].iloc[-1] / back["slope_n_per_m"].iloc[-1] < 1.1
