@@ -154,11 +154,11 @@ class ShaftElement:
         Returns
         -------
         (K,) array
-            Infinite where nothing moves.
+            Infinite where nothing moves, or hardly anything.
         """
         rings = (outer @ self.rows.T + inner @ self.inner.T) * self.shaft.arms
         _, reach = self.shaft.search_limits(1.0)
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", over="ignore"):
             return np.asarray(reach / np.abs(rings).max(axis=1))
 
     def motion(self, outer: Array, inner: Array) -> Array:

@@ -19,7 +19,7 @@ from facegear.machine.casing import Casing
 from facegear.machine.layout import Layout
 from facegear.parts.shafts import SeatedShaft, follow_rings
 from facegear.schema.casing import CasingFoot, CasingPlace, CasingSection
-from facegear.schema.transmission import Transmission
+from facegear.schema.transmission import PinionPlace, Transmission
 
 KEY = "transmission.casing"
 """Key of the section."""
@@ -52,12 +52,15 @@ def seat_names(section: Transmission) -> list[str]:
     list of str
         Pinions, bearings of pinions with shafts, and gears.
     """
-    names = []
-    for pinion in section.pinions:
-        names.append(pinion.name)
-        if (shaft := section.shaft_of(pinion)) is not None:
-            names += [f"{pinion.name} {ascii_uppercase[number]}" for number in range(len(shaft.bearings))]
+    names = [name for pinion in section.pinions for name in _own_seats(section, pinion)]
     return [*names, *(f"{side} gear" for side in section.face_gears)]
+
+
+def _own_seats(section: Transmission, pinion: PinionPlace) -> list[str]:
+    """Return the names that seats of a pinion may have, in order: its own, and those of its bearings."""
+    shaft = section.shaft_of(pinion)
+    letters = "" if shaft is None else ascii_uppercase[: len(shaft.bearings)]
+    return [pinion.name, *(f"{pinion.name} {letter}" for letter in letters)]
 
 
 def check_casing(section: Transmission) -> None:
@@ -316,7 +319,7 @@ def _refuse_clearance(section: Transmission, casing: CasingSection) -> None:
         key = f"transmission.single_pinions.{pinion.name}.clearance_um"
         if clearance is None:
             clearance, key = section.pinion.bearing_clearance_um, "transmission.pinion.clearance_um"
-        if clearance and any(name.startswith(pinion.name) for name in casing.seats):
+        if clearance and not casing.seats.keys().isdisjoint(_own_seats(section, pinion)):
             raise ConfigError(key, clearance, "0 where the pinion's seat gives way")
 
 

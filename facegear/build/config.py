@@ -28,6 +28,7 @@ from facegear.build.elastic_bodies import check_bodies, elastic_gears
 from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
+from facegear.build.rolling import check_preloads
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.resolution import (
@@ -296,6 +297,7 @@ class Config(Section):
                     "transmission", None, "given, as required by strength.load_factors = machine"
                 )
             return
+        check_preloads(machine)
         self._check_duty_speeds()
         self._check_sharing_map(machine)
         check_positions(pair, machine)

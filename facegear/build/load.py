@@ -199,6 +199,7 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         for section in sections:
             inside = inside.get(section) if isinstance(inside, dict) else None
         _locate(inside, key, folder)
+    _locate_cards(values, folder)
     for point in _study_points(values):
         for *sections, key in FILE_KEYS:
             _locate(point, ".".join([*sections, key]), folder)
@@ -212,6 +213,20 @@ def _locate(inside: Any, key: str, folder: Path) -> None:
     """
     if isinstance(inside, dict) and isinstance(inside.get(key), str):
         inside[key] = relative_to_cwd(inside[key], folder)
+
+
+def _locate_cards(values: Mapping[str, Any], folder: Path) -> None:
+    """Make the files of rolling bearings relative to the current folder, in place; names of cards of the
+    package, which have no ending, stay.
+    """
+    transmission = values.get("transmission")
+    shafts = transmission.get("shafts") if isinstance(transmission, dict) else None
+    for shaft in shafts.values() if isinstance(shafts, dict) else ():
+        for bearing in _dicts(shaft.get("bearings") if isinstance(shaft, dict) else None):
+            rolling = bearing.get("rolling")
+            inside, key = (rolling, "card") if isinstance(rolling, dict) else (bearing, "rolling")
+            if isinstance(inside.get(key), str) and Path(inside[key]).suffix:
+                _locate(inside, key, folder)
 
 
 def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

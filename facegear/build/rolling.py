@@ -81,6 +81,29 @@ LARGEST_PRELOAD = 0.05
 thrust is looked for."""
 
 
+def check_preloads(section: Transmission) -> None:
+    """Refuse preloads that no distance of the inner rings gives.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+
+    Raises
+    ------
+    ConfigError
+        For the first of them, by its whole key.
+    """
+    for name, shaft in section.shafts.items():
+        if not shaft.is_rolling:
+            continue
+        try:
+            rolling_shaft(shaft)
+        except ConfigError as error:
+            key = f"transmission.shafts.{name}.{error.key}"
+            raise ConfigError(key, error.value, error.requirement) from None
+
+
 def rolling_shaft(section: ShaftSection) -> RollingShaft:
     """Return a shaft with rolling bearings; equal sections share one object.
 

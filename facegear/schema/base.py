@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any, NoReturn, Self, TypeVar, get_args
+from typing import Any, NoReturn, Self, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -418,18 +418,28 @@ def _closest(key: str, keys: Iterable[str]) -> str | None:
 
 
 def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
-    """Return the keys that sections at a location, given from `model` down, may hold, unions included."""
-    models = {model}
+    """Return the keys that sections at a location, given from `model` down, may hold, unions included.
+
+    A part of the location is a key of a section, or a name in a mapping of sections, such as a pinion's.
+    """
+    kinds: list[Any] = [model]
     for part in location:
-        if isinstance(part, int):
-            continue
-        fields = [candidate.model_fields[part] for candidate in models if part in candidate.model_fields]
-        models = {nested for field in fields for nested in _models_in(field.annotation)}
-    return {key for candidate in models for key in candidate.model_fields}
+        if not isinstance(part, int):
+            kinds = [inner for kind in kinds for inner in _kinds_below(kind, part)]
+    return {key for kind in kinds if isinstance(kind, type) for key in kind.model_fields}
 
 
-def _models_in(annotation: Any) -> set[type[BaseModel]]:
-    """Return all section classes inside a type annotation: in unions, lists and mappings."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return {annotation}
-    return {nested for part in get_args(annotation) for nested in _models_in(part)}
+def _kinds_below(kind: Any, part: str) -> list[Any]:
+    """Return the kinds of values at a key of a section class, or at any name of a mapping."""
+    if get_origin(kind) is dict:
+        return _kinds_in(get_args(kind)[1])
+    field = kind.model_fields.get(part)
+    return [] if field is None else _kinds_in(field.annotation)
+
+
+def _kinds_in(annotation: Any) -> list[Any]:
+    """Return all section classes and mappings inside a type annotation: in unions and lists."""
+    is_section = isinstance(annotation, type) and issubclass(annotation, BaseModel)
+    if is_section or get_origin(annotation) is dict:
+        return [annotation]
+    return [kind for part in get_args(annotation) for kind in _kinds_in(part)]

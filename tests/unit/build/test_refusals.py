@@ -115,6 +115,24 @@ def test_mistakes_in_different_parts_of_a_config_are_reported_at_once():
     assert all(": must be " in line for line in message)
 
 
+def test_keys_below_the_name_of_a_shaft_or_a_mesh_are_listed_too():
+    """Names given by the user hid the section below them: the list was empty, and nothing was suggested."""
+    segments = [{"length_mm": 100, "diameter_mm": 40}]
+    bearings = [{"at_mm": at, "rolling": {"card": "deep_groove_6210"}} for at in (10, 90)]
+    shaft = {"segments": segments, "pinion_mm": 50, "bearings": bearings}
+    bearings[0]["rolling"]["clearance_um"] = 15
+    bearings[1]["rolling"]["zzz"] = 15
+    meshes = {"a/lower": {"q": 1}}
+    messages = lines(TWO, transmission__shafts={"input": shaft}, transmission__single_meshes=meshes)
+    (meant,) = [line for line in messages if "clearance_um" in line]
+    assert meant.startswith("transmission.shafts.input.bearings[0].rolling.clearance_um = 15: unknown key; ")
+    assert meant.endswith("did you mean 'clearance_diametral_um'?")
+    (listed,) = [line for line in messages if "zzz" in line]
+    assert "allowed here: clearance_diametral_um, contact_angle_deg" in listed
+    (listed,) = [line for line in messages if "a/lower" in line]
+    assert "backlash_um" in listed
+
+
 CAUSE = {"name": "a", "moves": {"transmission.backlash_um": 1.0}, "source": "drawing", "spread": 2.0}
 HARMONIC = {"order": 1, "amplitude_um": 1.0}
 

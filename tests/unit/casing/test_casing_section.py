@@ -7,8 +7,10 @@ import pytest
 
 import facegear
 from facegear.build.casing import reduced_casing
+from facegear.build.config import Config
 from facegear.build.load import load_config
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
 from facegear.schema.casing import CasingSection
 from tests.helpers.public_casing import FILE
 
@@ -71,6 +73,20 @@ def test_a_foot_of_springs_with_too_few_of_them_is_refused():
 def test_clearance_beside_a_seat_that_gives_way_is_refused():
     with pytest.raises(ConfigErrors, match=r"transmission\.pinion\.clearance_um"):
         load_config(EXAMPLE, {"transmission": {"pinion": {"clearance_um": 10}}})
+
+
+def test_clearance_is_refused_by_whole_names_of_seats():
+    """The seat of p10 was taken for one of p1, which has the clearance and stands on the ground."""
+    values = load_config(EXAMPLE).model_dump(mode="json")
+    machine = values["transmission"]
+    for pinion, name in zip(machine["pinions"], ("p10", "p1", "p2"), strict=True):
+        pinion["name"] = name
+    machine["casing"]["seats"] = {"p10": 101, "lower gear": 104, "upper gear": 105}
+    machine["single_pinions"] = {"p1": {"clearance_um": 10.0}}
+    parse(Config, values)
+    machine["casing"]["seats"]["p1"] = 102
+    with pytest.raises(ConfigErrors, match=r"single_pinions\.p1\.clearance_um = 10\.0: must be 0"):
+        parse(Config, values)
 
 
 def test_printed_kinematics_beside_a_casing_are_refused():

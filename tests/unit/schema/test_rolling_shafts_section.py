@@ -1,5 +1,7 @@
 """Rolling bearings and preload in the section of a shaft: what they build, and one line of refusal."""
 
+import shutil
+from pathlib import Path
 from string import ascii_uppercase
 
 import numpy as np
@@ -8,12 +10,15 @@ from ruamel.yaml import YAML
 from three_pinions import TEXT
 
 from facegear.bearings.shaft import find_shaft_equilibrium
+from facegear.build.load import load_config
 from facegear.build.rolling import nominal_state, rolling_shaft
 from facegear.errors import ConfigErrors
 from facegear.schema.base import parse
+from facegear.schema.rolling import ROLLING_CARDS
 from facegear.schema.shafts import ShaftSection
 from facegear.schema.transmission import Transmission
 
+EXAMPLE = Path(__file__).parents[3] / "config" / "bearings.yaml"
 BALL, ROLLER = {"card": "deep_groove_6210"}, {"card": "cylindrical_roller_nu210"}
 AHEAD = {"card": "angular_contact_7208", "loaded_by": "+z"}
 BACK = {**AHEAD, "loaded_by": "-z"}
@@ -118,6 +123,26 @@ def test_bearings_that_do_not_hold_the_shaft_are_refused_in_one_line(bearings, m
         parse(ShaftSection, shaft(*bearings, **more), "the shaft")
     messages = str(refusal.value).splitlines()
     assert len(messages) == 1 and line in messages[0]
+
+
+def test_a_thrust_that_no_preload_gives_is_refused_by_its_whole_key():
+    """The key began at the shaft's section, so that nobody saw which shaft it was."""
+    pair = shaft(BALL, BALL, preload={"bearings": ["A", "B"], "axial_n": 1e6})
+    with pytest.raises(ConfigErrors) as refusal:
+        load_config(EXAMPLE, {"transmission": {"shafts": {"idler": pair}}})
+    (line,) = refusal.value.lines
+    assert line.startswith("transmission.shafts.idler.preload.axial_n = 1000000.0: must be less than 4")
+
+
+@pytest.mark.parametrize("as_text", [False, True])
+def test_a_card_of_ones_own_lies_beside_the_config_that_names_it(as_text, tmp_path):
+    """It was looked for in the working directory, unlike every other file that a config names."""
+    shutil.copy(ROLLING_CARDS / "deep_groove_6305.yaml", tmp_path / "own_card.yaml")
+    rolling = "own_card.yaml" if as_text else {"card": "own_card.yaml"}
+    own = {"transmission": {"shafts": {"idler": shaft({"rolling": rolling}, BALL)}}}
+    YAML().dump(own, tmp_path / "own.yaml")
+    bearings = load_config([EXAMPLE, tmp_path / "own.yaml"]).transmission.shafts["idler"].bearings
+    assert [bearing.rolling.elements for bearing in bearings] == [7, 10]
 
 
 def test_letters_name_as_many_bearings_as_a_shaft_may_have():
