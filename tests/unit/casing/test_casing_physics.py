@@ -13,6 +13,7 @@ from facegear.machine.casing import Casing
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.layout import Body, Tilt
 from facegear.machine.linear_model import lumped_model
+from facegear.machine.loaded_contacts import forces_by_active_sets
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.machine import Damping, OpenFlanks
 from facegear.machine.poses.mesh_poses import mesh_poses
@@ -295,6 +296,22 @@ def test_a_shaft_that_tilts_has_the_statics_of_one_that_does_not():
         mean_equilibrium(shaft_casing(layout, mount_public(0), tilts)) for tilts in (False, True)
     )
     np.testing.assert_allclose(second.forces, first.forces, rtol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_casings_have_the_forces_of_active_sets(seed):
+    """An independent answer: linear springs of closed flanks, whole matrices, until no set changes."""
+    rng = np.random.default_rng(seed)
+    public = mount_public(0)
+    scale = np.exp(rng.normal(0.0, 0.7, public.size))
+    softer = public.stiffness * np.outer(scale, scale)
+    mounted = replace(public, stiffness=softer * rng.uniform(0.05, 3.0))
+    layout = make_small_layout(turned=rng.uniform(0.0, 60.0))
+    machine = make_small_machine(layout, place_on(mounted, layout), forces=rng.normal(0.0, 100.0, (5, 3)))
+    forces = forces_by_active_sets(machine)
+    assert forces is not None
+    settled = mean_equilibrium(machine).flank_forces[0]
+    np.testing.assert_allclose(settled, forces, rtol=1e-8, atol=1e-8 * forces.max())
 
 
 def test_negative_stiffness_and_free_casings_are_refused():
