@@ -3,10 +3,10 @@
 "use strict";
 (() => {
   const VERTEX = `#version 300 es
-    uniform mat4 camera; uniform mat3 turn;
+    uniform mat4 camera; uniform mat3 turn; uniform vec3 shift;
     in vec3 point; in vec3 load;
     out vec3 place; out vec3 carried;
-    void main() { place = turn * point; carried = load; gl_Position = camera * vec4(place, 1.0); }`;
+    void main() { place = turn * point + shift; carried = load; gl_Position = camera * vec4(place, 1.0); }`;
   const FRAGMENT = `#version 300 es
     precision highp float;
     uniform vec4 colour; uniform bool painted; uniform vec3 scale[9]; uniform vec3 eye;
@@ -32,14 +32,15 @@
     return found;
   }
 
-  // about -y for the pinion, -z for the gear, as in facegear/teeth/design.py; columns first
-  function turned(name, angle) {
+  // about -y for the pinion, -z for the gear, as in facegear/teeth/design.py, then to where the body stands; columns first
+  function turned({ name, matrix }, angle) {
     const c = Math.cos(angle), s = Math.sin(angle);
-    return name === "pinion" ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];
+    const about = name === "pinion" ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];
+    return about.map((_, k) => [0, 1, 2].reduce((sum, i) => sum + matrix[3 * (k % 3) + i] * about[k - (k % 3) + i], 0));
   }
 
   async function start(root) {
-    const uniforms = ["camera", "turn", "colour", "painted", "scale", "eye"];
+    const uniforms = ["camera", "turn", "shift", "colour", "painted", "scale", "eye"];
     const viewer = await opened(root, VERTEX, FRAGMENT, ["point", "load"], uniforms);
     if (!viewer) return;
     const { canvas, gl, data, find, places } = viewer;
@@ -79,8 +80,9 @@
     function drawBody(body, angle, alpha) {
       gl.bindVertexArray(body.tooth.array);
       gl.uniform4f(places.colour, ...COLOURS[body.name], alpha);
+      gl.uniform3f(places.shift, ...body.shift);
       for (let n = body.first; n < body.first + body.shown; n++) {
-        gl.uniformMatrix3fv(places.turn, false, turned(body.name, angle + ((n + body.turn) * 2 * Math.PI) / body.teeth));
+        gl.uniformMatrix3fv(places.turn, false, turned(body, angle + ((n + body.turn) * 2 * Math.PI) / body.teeth));
         gl.drawElements(gl.TRIANGLES, body.tooth.count, gl.UNSIGNED_INT, 0);
       }
     }
@@ -105,6 +107,7 @@
     }
 
     function drawLoads(found, index, angle) {
+      gl.uniform3f(places.shift, ...pinion.shift);
       const values = found.values[quantity().key];
       for (let tooth = -2; tooth <= 2; tooth++) {
         flank.values.fill(0);
@@ -117,20 +120,21 @@
                 flank.values.set([values[k] / 255, 1, values[k] > 0 ? 1 : 0], 3 * node);
               }
           }
-        if (any) paint(flank, turned("pinion", angle + ((tooth - 0.5) * 2 * Math.PI) / pinion.teeth));
+        if (any) paint(flank, turned(pinion, angle + ((tooth - 0.5) * 2 * Math.PI) / pinion.teeth));
       }
     }
 
     // a tooth's stress at a position of the pitch is that of its passage so many pitches on
     function drawRootStress(found, index, bodies) {
       for (const [body, angle] of bodies) {
+        gl.uniform3f(places.shift, ...body.shift);
         const { drawn, first } = body.fillets, values = found.tension[body.name], gauges = drawn.values.length / 3;
         const last = first + values.length / gauges / data.positions.length;
         for (let tooth = Math.max(first, body.first); tooth < Math.min(last, body.first + body.shown); tooth++) {
           const row = ((tooth - first) * data.positions.length + index) * gauges;
           for (let k = 0; k < gauges; k++)
             drawn.values.set([values[row + k] / 255, 1, values[row + k] > 0 ? 1 : 0], 3 * k);
-          paint(drawn, turned(body.name, angle + ((tooth + body.turn) * 2 * Math.PI) / body.teeth));
+          paint(drawn, turned(body, angle + ((tooth + body.turn) * 2 * Math.PI) / body.teeth));
         }
       }
     }

@@ -1,6 +1,8 @@
 """The pair in mesh and mode shapes in three dimensions, for the viewers of the report."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,8 @@ from facegear.arrays import AnyArray, Array, Arrays, Integers, Mask
 from facegear.contact.pattern import EDGES, SHARES
 from facegear.quantities import BODIES, Body
 from facegear.report.page import View, encode_array
-from facegear.teeth.design import PairDesign
+from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.placement import RigidMotion, pinion_to_gear
 from facegear.teeth.solids import solid, teeth_of
 
 COLOURS = (
@@ -96,9 +99,11 @@ def pair_view(
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])
+    stands = _pinion_stands(design)
+    middle = np.array([[0.0, design.middle, -design.pinion_pitch_radius]])
     data = {
         "bodies": [_body(design, name, stress) for name in BODIES],
-        "centre": [0.0, 1e3 * design.mean_radius, -1e3 * design.pinion_pitch_radius],
+        "centre": (1e3 * stands.points(middle)[0]).tolist(),
         "size": 1e3 * (design.pinion_tip_radius + design.pinion.width),
         "lattice": {
             "shape": [int(n) for n in loads["shape"]],
@@ -124,11 +129,18 @@ def pair_view(
     )
 
 
+def _pinion_stands(design: PairDesign) -> RigidMotion:
+    """Return the motion from the frame of a pinion that turns about y to that of the gear, as designed."""
+    half_pitch = pi / design.pinion.teeth
+    return pinion_to_gear(replace(design, assembly=AssemblyErrors()), half_pitch, 0.0, 0.0)
+
+
 def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, Any]:
     """Return the drawn teeth of a body as plain values: number of all teeth, first and number of those
-    shown, rotation of tooth 0 in pitches, surface patches (mm, base64), and gauges in the fillets (None
-    without stress).
+    shown, rotation of tooth 0 in pitches, matrix (row by row) and shift (mm) that put it in place, surface
+    patches (mm, base64), and gauges in the fillets (None without stress).
     """
+    stands = _pinion_stands(design) if name == "pinion" else RigidMotion(np.eye(3), np.zeros(3))
     teeth = teeth_of(design, name)
     tooth_count = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
     return {
@@ -137,6 +149,8 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
         "first": -(tooth_count // 2),
         "shown": tooth_count,
         "turn": -0.5 if name == "pinion" else 0.0,
+        "matrix": stands.matrix.ravel().tolist(),
+        "shift": (1e3 * stands.shift).tolist(),
         "patches": [
             {"shape": list(patch.shape[:2]), "points": encode_array(1e3 * patch, np.float32)}
             for patch in solid(design, name, 1, PROFILE, WIDTH)

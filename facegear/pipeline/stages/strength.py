@@ -40,7 +40,8 @@ from facegear.strength.rating_tables import (
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
 from facegear.teeth.analysis import section_contact_ratio
-from facegear.teeth.placement import distinct_pairs
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import distinct_pairs, nominal_teeth
 from facegear.ties import first_largest_row
 
 
@@ -91,18 +92,23 @@ def root_stress(
     setup = contact_setup(tooth_pair, mesh, contact)
     design, bodies = setup.pair.design, (every_flank_from_arrays(pinion), every_flank_from_arrays(face_gear))
     pairs = list(zip(*bodies, strict=True))
-    of_variants = [
-        flanks_of(variant, design, pairs) for variant in distinct_pairs(design, gears_of(design, pairs))[0]
-    ]
+    variants = distinct_pairs(design, gears_of(design, pairs))[0]
+    of_variants = [flanks_of(variant, design, pairs) for variant in variants]
     flanks: list[dict[Body, GearFlank]] = [dict(zip(BODIES, pair, strict=True)) for pair in of_variants]
-    roots = {body: passing(body, flank, loads) for body, flank in flanks[0].items()}
-    errors = _face_errors(setup, roots)
+    errors: list[dict[Body, float]] = []
+    known: dict[PairDesign, dict[Body, float]] = {}
+    for number, (variant, bodies_of_flank) in enumerate(zip(variants, flanks, strict=True)):
+        teeth = nominal_teeth(variant)
+        if teeth not in known:
+            roots = {body: passing(body, flank, loads, number) for body, flank in bodies_of_flank.items()}
+            known[teeth] = _face_errors(setup, variant, roots)
+        errors.append(known[teeth])
     content = root_contents(flanks, loads, errors)
     return Outcome(content, _summary(content["by_flank"]))
 
 
 def root_contents(
-    flanks: Sequence[Mapping[Body, GearFlank]], loads: Arrays, face_errors: Mapping[Body, float]
+    flanks: Sequence[Mapping[Body, GearFlank]], loads: Arrays, face_errors: Sequence[Mapping[Body, float]]
 ) -> dict[str, Any]:
     """Build the tables and arrays that stage root_stress stores, for all flanks that differ.
 
@@ -112,9 +118,9 @@ def root_contents(
         Surface, compliance and gauges of both bodies, for each variant of the loads.
     loads : Arrays
         Arrays `loads` of stage contact.
-    face_errors : Mapping[Body, float]
-        Relative error of root stress by the distance of planes along the face, by body; it is added to
-        the error of the mesh.
+    face_errors : Sequence[Mapping[Body, float]]
+        Relative error of root stress by the distance of planes along the face, by body for each variant; it
+        is added to the error of the mesh.
 
     Returns
     -------
@@ -123,7 +129,10 @@ def root_contents(
     """
     numbers = loads["flank_variant"]
     variants: list[dict[str, RootStress]] = [
-        {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in of_variant.items()}
+        {
+            body: _passing(body, flank, loads, variant, face_errors[variant][body])
+            for body, flank in of_variant.items()
+        }
         for variant, of_variant in enumerate(flanks[: int(numbers.max()) + 1])
     ]
     positions: list[dict[str, Array]] = [
@@ -148,15 +157,18 @@ def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_err
     return replace(root, error=root.error + face_error)
 
 
-def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
-    """Return the relative error of root stress by the distance of planes along the face, by body.
+def _face_errors(
+    setup: ContactSetup, design: PairDesign, roots: Mapping[Body, RootStress]
+) -> dict[Body, float]:
+    """Return the relative error of the root stress of a pair by the distance of planes along the face, by
+    body.
 
     It is estimated from a solution with planes twice as far apart (Richardson); nan where that fails.
     """
     pair = setup.pair
     materials = {body: pair.material(body) for body in BODIES}
     try:
-        coarser = coarser_roots(pair.design, materials, setup.sizes, setup.plan, roots)
+        coarser = coarser_roots(design, materials, setup.sizes, setup.plan, roots)
     except FacegearError:
         return dict.fromkeys(BODIES, np.nan)
     return {body: face_error(roots[body], coarser[body]) for body in BODIES}

@@ -4,11 +4,14 @@ import base64
 import gzip
 import json
 import re
+from math import cos, sin
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from family_pairs import public_pair
+from public_teeth import NAMES
 
 from facegear.build.load import load_config
 from facegear.build.tooth_pair import pair
@@ -153,3 +156,21 @@ def test_friction_colours_the_lines_of_contact_by_loss_and_by_flash_temperature(
             drawn = decoded(found["values"][key], "u1").astype(float) / 255.0 * found["largest"][key]
             assert found["largest"][key] == pytest.approx(wanted.max())
             np.testing.assert_allclose(drawn, wanted, atol=found["largest"][key] / 255.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_pinion_is_drawn_where_its_axis_stands(loads, name):
+    """It was drawn about y through the origin, whatever the shaft angle and the offset."""
+    pair_of_kind = public_pair(name)
+    ltca = pd.DataFrame({"torque_n_m": [100.0], "position": [0.0], "ste_um": [1.0]})
+    data = pair_view(pair_of_kind, loads, ltca.assign(**dict.fromkeys(SHARES, 0.0))).data
+    pinion, gear = data["bodies"]
+    gamma = pair_of_kind.shaft_angle
+    outwards = np.reshape(pinion["matrix"], (3, 3)) @ [0.0, 1.0, 0.0]
+    np.testing.assert_allclose(outwards, [0.0, sin(gamma), -cos(gamma)], atol=1e-15)
+    np.testing.assert_allclose(pinion["shift"], [1e3 * pair_of_kind.offset, 0.0, 0.0], atol=1e-12)
+    assert gear["matrix"] == np.eye(3).ravel().tolist() and gear["shift"] == [0.0, 0.0, 0.0]
+    # the pinion's pitch line passes by the middle of the picture
+    height = -pair_of_kind.pinion_pitch_radius * np.array([0.0, cos(gamma), sin(gamma)])
+    expected = np.array([pair_of_kind.offset, 0.0, 0.0]) + pair_of_kind.middle * outwards + height
+    np.testing.assert_allclose(data["centre"], 1e3 * expected, atol=1e-10)
