@@ -426,7 +426,8 @@ def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
     for part in location:
         if not isinstance(part, int):
             kinds = [inner for kind in kinds for inner in _kinds_below(kind, part)]
-    return {key for kind in kinds if isinstance(kind, type) for key in kind.model_fields}
+    sections = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
+    return {key for section in sections for key in section.model_fields}
 
 
 def _kinds_below(kind: Any, part: str) -> list[Any]:

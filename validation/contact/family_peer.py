@@ -75,6 +75,8 @@ def touching_place(design: PairDesign) -> tuple[float, float, float]:
         Roll angle (rad), place y along the pinion's axis (m) and position (fraction of a pitch).
     """
     flank, line = design.family.pinion_flanks[0], contact_line(design.family, 1)
+    if line is None:
+        raise ValueError("the flanks of this pair have no line of contact")
     s = contact_path(design.family, line).middle
     roll, y = (s + line.pinion_lead) * flank.cosine / flank.base_radius, float(line.pinion_y(s))
     angle = roll + flank.lead * (y - design.middle) / flank.base_radius - line.pinion_slope - flank.phase
