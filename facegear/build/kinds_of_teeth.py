@@ -27,10 +27,12 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
+    # a lower gear that no machine has would be meshed as well, and need not have teeth
+    **dict.fromkeys(("compliance", "contact"), ("shaft_angle_deg", "offset_mm")),
     **dict.fromkeys(("tooth_errors", "pose_surface", "displaced_contact"), ALL_KINDS),
     **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
     **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
-    "lubrication": ("shaft_angle_deg",),
+    "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
     **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
     **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
     **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
