@@ -1,13 +1,15 @@
 """Helical and tapered pairs through the chain of stages, from contact to the machine's load sharing."""
 
-from math import cos, radians, sin, tan
+from math import cos, pi, radians, sin, tan
 
 import numpy as np
 import pytest
 from kinds_of_teeth import public_section
 
 import facegear
+from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.contact.summary import BY_FLANK_COLUMNS
+from facegear.schema.base import parse
 
 COARSE = {
     "mesh": {"resolution": {"profile_mm": 1.4, "width_mm": 6, "thickness_mm": 4}},
@@ -130,3 +132,25 @@ def test_root_stress_and_its_error_follow_the_mirror_rule():
         mine, theirs = tables[0][tables[0]["flank"] == flank], tables[1][tables[1]["flank"] == other]
         for name in ("largest_mpa", "largest_error_mpa", "passage", "radius_mm"):
             np.testing.assert_allclose(mine[name], theirs[name], rtol=1e-6)
+
+
+OIL = {"oil": "polyol_ester_5_cst", "supply_temperature_c": 100, "pinion": {"ra_um": 0.3}}
+OIL |= {
+    "face_gear": {"ra_um": 0.3},
+    "bulk": {"source": "cooling", "pinion_w_per_k": 60, "face_gear_w_per_k": 200},
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_power_of_the_moments_of_friction_is_its_loss(name):
+    """Loss comes from sliding at the contacts, moments from friction's forces about both axes."""
+    machine = {"lubrication": OIL, "dynamics": {"speed_rpm": 6000}}
+    pair_alone = {"case": "kind", "tooth_pair": public_section(name)}
+    friction = facegear.load(pair_alone | COARSE | machine, results=None).friction(speed_rpm=6000)
+    design = pair_design(parse(ToothPair, public_section(name)))
+    ratio = design.pinion.teeth / design.face_gear.teeth
+    levers = friction.content["excitation"].groupby("torque_n_m").mean()
+    lever = 1e-3 * (levers["pinion_lever_mm"] + ratio * levers["face_gear_lever_mm"])
+    power = -lever * levers.index / design.normal_arm * 6000 * pi / 30
+    losses = friction.content["by_torque"].set_index("torque_n_m")["loss_w"]
+    np.testing.assert_allclose(power, losses, rtol=0.01)
