@@ -238,6 +238,8 @@ rule family_peer:
         "results/{case}/benchmarks/rules/family_peer.tsv"
     conda:
         ENVIRONMENT
+    resources:
+        runtime=60,
     params:
         code=code("validation/scripts/family_peer.py"),
     script:

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
+from validation.contact.family_peer import CONFIGS, KRATOS_LEVELS, LEVELS, family_pair
 from validation.contact.pair_peer import CLOSE
 from validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, LINEAR, SECTORS
 
@@ -13,6 +14,10 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "explanation" / "contact.md").read_text()
 MEASURED = ROOT / "docs" / "measured"
 PEERS = ("CalculiX", "Kratos")
+
+
+SOLVED = [(kind, peer) for kind in CONFIGS for peer in PEERS if peer == "CalculiX" or KRATOS_LEVELS[kind]]
+"""Kinds of teeth other than spur, and the programs that solve them."""
 
 
 def pair_table():
@@ -25,8 +30,24 @@ def by_program(name):
     return table[table["program"].str.startswith(name)].set_index("level")
 
 
-def pair_rows():
-    for one in pair_table().itertuples():
+def family_table():
+    return pd.read_csv(MEASURED / "family_peer.csv")
+
+
+def of_kind(kind, program):
+    """Row of a kind of teeth and a program on its finest mesh, and that of ours on the same one.
+
+    Kratos' mesh is compared with ours of the same elements.
+    """
+    rows = family_table().query("teeth == @kind")
+    found = rows[rows["program"].str.startswith(program)].iloc[-1]
+    same = "facegear, 8" if program == "Kratos" else "facegear, strip"
+    ours = rows[rows["program"].str.startswith(same) & (rows["level"] == found["level"])]
+    return found, ours.iloc[0]
+
+
+def pair_rows(table):
+    for one in table.itertuples():
         numbers = (
             (one.stiffness_n_per_um, one.stiffness_error_percent, ".1f"),
             (one.pressure_mpa, one.pressure_error_percent, ".0f"),
@@ -35,7 +56,8 @@ def pair_rows():
         )
         cells = [f"{value:{form}} ({error:+.1f} %)" for value, error, form in numbers]
         costs = f"{one.cpu_seconds:.0f} | {one.memory_gb:.2f}"
-        yield f"| {one.program} | {one.level} | {1e-3 * one.dof:.0f} | {' | '.join(cells)} | {costs} |"
+        kind = f"{one.teeth} | " if "teeth" in table else ""
+        yield f"| {kind}{one.program} | {one.level} | {1e-3 * one.dof:.0f} | {' | '.join(cells)} | {costs} |"
 
 
 def levels():
@@ -88,7 +110,7 @@ def test_the_time_of_a_contact_on_the_page_is_the_stored_one():
     assert f"{1e3 * seconds:.1f} ms a position and torque" in PAGE
 
 
-@pytest.mark.parametrize("message", list(pair_rows()))
+@pytest.mark.parametrize("message", [*pair_rows(pair_table()), *pair_rows(family_table())])
 def test_a_row_about_the_pair_is_the_stored_measurement(message):
     assert message in PAGE
 
@@ -136,3 +158,38 @@ def test_the_distance_of_both_peers_falls_with_the_mesh():
             assert abs(rows.loc["fine", f"{name}_error_percent"]) < abs(
                 rows.loc["medium", f"{name}_error_percent"]
             )
+
+
+@pytest.mark.parametrize("kind", CONFIGS)
+def test_all_programs_carry_the_torque_of_the_pair_of_other_teeth(kind):
+    torque = family_pair(kind).torque
+    rows = family_table().query("teeth == @kind")
+    assert (rows["torque_n_m"] / torque - 1.0).abs().max() < CLOSE
+    assert len(rows) == 1 + 3 * len(LEVELS) + len(KRATOS_LEVELS[kind])
+
+
+@against(
+    "third-party program",
+    "CalculiX, and Kratos with 8-node elements (docs/measured/family_peer.csv, `make peers`)",
+    capability="contact compliance",
+    module="facegear.contact.position",
+)
+@pytest.mark.parametrize(("kind", "peer"), SOLVED)
+def test_two_other_programs_find_stiffness_and_pressure_of_helical_and_tapered_teeth(kind, peer):
+    found, ours = of_kind(kind, peer)
+    for column, unit, relative in (("stiffness", "n_per_um", 1e-2), ("pressure", "mpa", 2e-2)):
+        name = f"{column}_{unit}"
+        agrees(f"{column} of {kind} teeth by {peer}, {unit}", ours[name], found[name], relative=relative)
+
+
+@against(
+    "third-party program",
+    "CalculiX, and Kratos with 8-node elements (docs/measured/family_peer.csv, `make peers`)",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
+@pytest.mark.parametrize(("kind", "peer"), SOLVED)
+def test_two_other_programs_find_the_root_stress_of_helical_and_tapered_teeth(kind, peer):
+    found, ours = of_kind(kind, peer)
+    for column in ("pinion_root_mpa", "gear_root_mpa"):
+        agrees(f"{column} of {kind} teeth by {peer}", ours[column], found[column], relative=2e-2)
