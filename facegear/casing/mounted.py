@@ -14,8 +14,8 @@ from facegear.errors import InvalidInput
 from facegear.number_format import count_noun
 
 LETTERS = ("x", "y", "z", "tilt_x", "tilt_y", "tilt_z")
-"""Motions of a seat or foot, along and about the casing's X (to the first pinion), Y and Z (the gears'
-axis).
+"""Motions of a seat or foot, along and about the casing's X (to a pinion at angle 0), Y and Z (the
+gears' axis).
 """
 HOLDING_LIMIT = 1e-9
 """Smallest eigenvalue over the largest, rows scaled to a unit diagonal, above which feet hold a casing."""
@@ -39,8 +39,8 @@ class Foot:
 class MountedCasing:
     """A casing on its feet by n coordinates: six for each seat and each foot on springs, then modes.
 
-    Axes are those of the machine: X from the gears' axis to the first pinion, Z along the axis from the lower
-    to the upper gear. SI units.
+    Axes are those of the machine: X from the gears' axis to a pinion at angle 0, Z along the axis from the
+    lower to the upper gear. SI units.
 
     Attributes
     ----------

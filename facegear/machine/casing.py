@@ -367,8 +367,8 @@ class Casing:
 
 
 def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple[Array, Array]:
-    """Return axes and place of a body in the axes of the casing, X to the first pinion and Z along the
-    gears'.
+    """Return axes and place of a body in the axes of the casing, X to where angles of pinions begin and Z
+    along the gears'.
 
     Parameters
     ----------
@@ -385,18 +385,15 @@ def body_axes(layout: Layout, body: int, distance: float | None = None) -> tuple
         Rows are the body's x, y and z; the point, for a gear the one to which its motions belong, m.
     """
     pinions = len(layout.pinions)
-    first = layout.angles[0]
     if body < pinions:
-        around = layout.angles[body] - first
-        cosine, sine = np.cos(around), np.sin(around)
+        cosine, sine = np.cos(layout.angles[body]), np.sin(layout.angles[body])
         axes = np.array([[-sine, cosine, 0.0], [0.0, 0.0, 1.0], [cosine, sine, 0.0]])
         along = layout.pinion_middle if distance is None else distance
         if layout.kind is None:
             return axes, along * axes[2]
         axes = layout.kind.lean @ axes
         return axes, layout.kind.offset * axes[0] + along * axes[2]
-    cosine, sine = np.cos(first), np.sin(first)
-    axes = np.array([[sine, cosine, 0.0], [-cosine, sine, 0.0], [0.0, 0.0, 1.0]])
+    axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     gear = body - pinions
     return axes, np.array([0.0, 0.0, layout.gears[gear].sign * layout.tilt_distance(gear)])
 

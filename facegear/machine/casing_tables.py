@@ -40,7 +40,7 @@ def seat_motion_table(machine: Machine, equilibrium: Equilibria) -> pd.DataFrame
     Returns
     -------
     pd.DataFrame
-        A row a seat: seat, then MOTIONS along and about X (to the first pinion), Y and Z.
+        A row a seat: seat, then MOTIONS along and about X (to a pinion at angle 0), Y and Z.
     """
     assert machine.casing is not None
     mounted = machine.casing.mounted

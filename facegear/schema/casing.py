@@ -18,7 +18,7 @@ SQUARE = 1e-6
 class CasingAxes(Section):
     """Where the machine stands in the axes of the file."""
 
-    x: Direction = Field((1.0, 0.0, 0.0), description="from the gears' axis to the first pinion")
+    x: Direction = Field((1.0, 0.0, 0.0), description="from the gears' axis to a pinion at angle 0")
     z: Direction = Field(
         (0.0, 0.0, 1.0), description="along the gears' axis, from the lower to the upper gear"
     )

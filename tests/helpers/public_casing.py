@@ -35,15 +35,16 @@ def sensor_rows():
     return 1e-3 * motion * per_metre
 
 
-def mount_public(modes=30, factor=1.0, damping_ratio=0.01, with_mass=True):
-    """The public casing on its held base, `factor` times stiffer."""
+def mount_public(modes=30, factor=1.0, damping_ratio=0.01, with_mass=True, turned=0.0):
+    """The public casing on its held base, `factor` times stiffer, turned about the gears' axis, rad."""
     casing = read_public_casing()
     seats, base = make_interfaces(casing)
     reduction = reduce_casing(casing, [*seats, base], modes)
     sensors = sensor_rows()[:, : 36 + modes] * np.r_[np.ones(36), reduction_signs(casing, modes)]
     mass = reduction.mass if with_mass else np.zeros_like(reduction.mass)
     reduction = Reduction(factor * reduction.stiffness, mass, None, reduction.frequencies, sensors)
-    axes = np.eye(3), np.zeros(3)
+    cosine, sine = np.cos(turned), np.sin(turned)
+    axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3)
     return mount(reduction, seats, [Foot(base)], ["x", "y", "z"], axes, damping_ratio, casing.total_mass)
 
 

@@ -27,7 +27,7 @@ class CasingLoadsResult(Result):
         return self.content["sharing"].copy()
 
     def seats(self) -> pd.DataFrame:
-        """One row a seat: its motion along and about X (to the first pinion), Y and Z (the gears' axis).
+        """One row a seat: its motion along and about X (to a pinion at angle 0), Y and Z (the gears' axis).
 
         Columns: seat, x_um, y_um, z_um, tilt_x_urad, tilt_y_urad, tilt_z_urad.
 

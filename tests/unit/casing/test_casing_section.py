@@ -70,6 +70,16 @@ def test_a_foot_of_springs_with_too_few_of_them_is_refused():
     assert "3 free motions" in line
 
 
+@pytest.mark.parametrize("order", [(2, 1, 0), (1, 2, 0)])
+def test_mesh_forces_on_a_casing_do_not_depend_on_the_order_of_pinions(order):
+    """The casing turned with the pinion that came first in the list."""
+    gearbox = facegear.load(EXAMPLE, results=None)
+    pinions = gearbox.values["transmission"]["pinions"]
+    reordered = gearbox.with_values({"transmission.pinions": [pinions[number] for number in order]})
+    forces, expected = (each.statics().table().set_index("mesh")["force_n"] for each in (reordered, gearbox))
+    np.testing.assert_allclose(forces[expected.index], expected, rtol=1e-10)
+
+
 def test_clearance_beside_a_seat_that_gives_way_is_refused():
     with pytest.raises(ConfigErrors, match=r"transmission\.pinion\.clearance_um"):
         load_config(EXAMPLE, {"transmission": {"pinion": {"clearance_um": 10}}})
