@@ -56,8 +56,8 @@ def refusing_names(stages: Iterable[str], values: Mapping[str, Any]) -> list[str
         The names of the stages, and `friction_in_motion` where they include friction with that effect.
     """
     names = list(stages)
-    given = values["lubrication"] and values["transmission"]
-    if "lubrication" in names and given and values["lubrication"]["friction"]["effect"] == "excitation":
+    has_both = values["lubrication"] and values["transmission"]
+    if "lubrication" in names and has_both and values["lubrication"]["friction"]["effect"] == "excitation":
         names.append("friction_in_motion")
     return names
 

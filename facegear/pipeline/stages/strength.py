@@ -96,13 +96,13 @@ def root_stress(
     of_variants = [flanks_of(variant, design, pairs) for variant in variants]
     flanks: list[dict[Body, GearFlank]] = [dict(zip(BODIES, pair, strict=True)) for pair in of_variants]
     errors: list[dict[Body, float]] = []
-    known: dict[PairDesign, dict[Body, float]] = {}
+    errors_of_teeth: dict[PairDesign, dict[Body, float]] = {}
     for number, (variant, bodies_of_flank) in enumerate(zip(variants, flanks, strict=True)):
         teeth = nominal_teeth(variant)
-        if teeth not in known:
+        if teeth not in errors_of_teeth:
             roots = {body: passing(body, flank, loads, number) for body, flank in bodies_of_flank.items()}
-            known[teeth] = _face_errors(setup, variant, roots)
-        errors.append(known[teeth])
+            errors_of_teeth[teeth] = _face_errors(setup, variant, roots)
+        errors.append(errors_of_teeth[teeth])
     content = root_contents(flanks, loads, errors)
     return Outcome(content, _summary(content["by_flank"]))
 
