@@ -98,8 +98,8 @@ def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, An
     case = Case(values, cases)
     wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
     names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])
-    refusals = refused_keys(refusing_names(names, values), values["tooth_pair"])
-    errors = [*refusals.values(), *refused_moves(names, values)]
+    kind_errors = refused_keys(refusing_names(names, values), values["tooth_pair"])
+    errors = [*kind_errors.values(), *refused_moves(names, values)]
     return [str(error) for error in errors]
 
 

@@ -9,7 +9,7 @@ from facegear.casing.reduction import own_modes
 from facegear.machine.linear_model import LinearModel, Spin
 
 CASING = "casing"
-"""Body of the casing's coordinates in labels: `casing:upper gear x`."""
+"""Body of the casing's coordinates, before the colon in their labels."""
 CASING_MODE = 0.5
 """Part of the kinetic energy in the casing from which a mode is one of the casing: a free choice."""
 
