@@ -426,7 +426,7 @@ def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
     for part in location:
         if not isinstance(part, int):
             kinds = [inner for kind in kinds for inner in _kinds_below(kind, part)]
-    return {key for kind in kinds if isinstance(kind, type) for key in kind.model_fields}
+    return {key for kind in kinds if get_origin(kind) is not dict for key in kind.model_fields}
 
 
 def _kinds_below(kind: Any, part: str) -> list[Any]:
