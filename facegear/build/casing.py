@@ -216,6 +216,48 @@ def _bearing_seat(pinion: str, number: int, mounted: MountedCasing) -> str:
     return name if name in mounted.seats else pinion if pinion in mounted.seats else ""
 
 
+def misplaced_seats(section: Transmission, layout: Layout) -> list[str]:
+    """List the seats that stand far from what they carry, as where the axes of the file are mistaken.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config, with a casing.
+    layout : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    list of str
+        One line each, with its key: a pinion's seat behind the gears' axis or less than half as far from
+        another pinion's axis, and an upper gear's seat below that of the lower gear.
+    """
+    casing = section.casing
+    assert casing is not None
+    digest = casing.content or content_of(files_of(casing.files))
+    interfaces, _ = _interfaces(casing, _read(tuple(casing.files.items()), digest, casing.units))
+    rotation, origin = _machine_axes(casing)
+    seats = {seat.name: rotation @ (seat.position - origin) for seat in interfaces}
+    ways = np.stack([np.cos(layout.angles), np.sin(layout.angles), np.zeros(len(layout.angles))], axis=1)
+    lines = []
+    for number, pinion in enumerate(section.pinions):
+        for name in _own_seats(section, pinion):
+            if name not in seats:
+                continue
+            along = ways @ seats[name]
+            distances = np.linalg.norm(seats[name] - np.maximum(along, 0.0)[:, None] * ways, axis=1)
+            nearest = int(distances.argmin())
+            if along[number] > 0.0 and distances[number] <= 2.0 * distances[nearest]:
+                continue
+            distance = f"{1e3 * distances[number]:.4g} mm from the axis of {pinion.name}"
+            beside = "" if nearest == number else f", nearer to that of {section.pinions[nearest].name}"
+            lines.append(f"{KEY}.seats.{name}: stands {distance}{beside}; does axes fit the file?")
+    lower, upper = (seats.get(f"{side} gear") for side in ("lower", "upper"))
+    if lower is not None and upper is not None and upper[2] < lower[2]:
+        lines.append(f"{KEY}.seats.upper gear: stands below that of the lower gear; does axes fit the file?")
+    return lines
+
+
 @lru_cache(maxsize=2)
 def _read(files: tuple[tuple[str, str | None], ...], digest: str, units: str) -> WholeCasing:
     """Return the casing of files; equal names with equal content (`digest`) share it."""

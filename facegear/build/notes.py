@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from facegear.build.casing import misplaced_seats
 from facegear.build.checks import geometric_backlash
 from facegear.build.lumped_model import LumpedParts, half_backlash, lumped_parts
-from facegear.build.machine_layout import lumped_sections
+from facegear.build.machine_layout import layout, lumped_sections
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
@@ -221,8 +222,9 @@ def notes(values: Mapping[str, Any]) -> list[str]:
     There is a note for a config that reproduces nothing but has the kinematics of the publication, for
     errors that turn, for dynamics with a backlash other than that of the teeth, for preloads and external
     forces, for periodic torques that do not repeat with the mesh, for numbers that several causes move,
-    for friction that samples and designs leave out of their motion, for friction of teeth as assembled
-    beside an operating pose, for single teeth, and for values far from their usual size.
+    for seats of a casing far from what they carry, for friction that samples and designs leave out of
+    their motion, for friction of teeth as assembled beside an operating pose, for single teeth, and for
+    values far from their usual size.
 
     Parameters
     ----------
@@ -247,6 +249,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _pushes(transmission)
         + _unrepeated(values)
         + _sums(values)
+        + _seats(values)
         + _without_friction(values)
         + [AS_ASSEMBLED] * (transmission["operating_pose"] == "static" and bool(values.get("lubrication")))
         + _single_teeth(values)
@@ -287,6 +290,19 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
         return []
     lines = preloads(*lumped_sections(values["transmission"], values["tooth_pair"]))
     return [f"{line}: preloaded at rest, carried by bearings and teeth at any torque" for line in lines]
+
+
+def _seats(values: Mapping[str, Any]) -> list[str]:
+    """Return a note for each seat of the casing that stands far from what it carries; none where the files
+    of the casing are gone, as where stored results are shown.
+    """
+    if values["transmission"].get("casing") is None or "tooth_pair" not in values:
+        return []
+    section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
+    try:
+        return misplaced_seats(section, layout(section, teeth))
+    except (ConfigError, OSError):
+        return []
 
 
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:

@@ -9,6 +9,7 @@ import facegear
 from facegear.build.casing import reduced_casing
 from facegear.build.config import Config
 from facegear.build.load import load_config
+from facegear.build.notes import notes
 from facegear.errors import ConfigErrors
 from facegear.schema.base import parse
 from facegear.schema.casing import CasingSection
@@ -97,6 +98,22 @@ def test_clearance_is_refused_by_whole_names_of_seats():
     machine["casing"]["seats"]["p1"] = 102
     with pytest.raises(ConfigErrors, match=r"single_pinions\.p1\.clearance_um = 10\.0: must be 0"):
         parse(Config, values)
+
+
+@pytest.mark.parametrize(
+    ("axes", "noted"),
+    [
+        ({}, []),
+        ({"x": [0, 1, 0]}, ["p0", "p1", "p2"]),
+        ({"x": [-1, 0, 0]}, ["p0", "p1", "p2"]),
+        ({"x": [1, 0, 0], "z": [0, 0, -1]}, ["p1", "upper gear"]),
+    ],
+)
+def test_seats_far_from_what_they_carry_get_a_note(axes, noted):
+    """Mistaken axes of the file passed without a word: bearings were tied to seats of other pinions."""
+    values = load_config(EXAMPLE, {"transmission": {"casing": {"axes": axes}}}).model_dump(mode="json")
+    lines = [line for line in notes(values) if ".casing.seats." in line]
+    assert [line.split(".seats.")[1].split(":")[0] for line in lines] == noted
 
 
 def test_printed_kinematics_beside_a_casing_are_refused():

@@ -16,6 +16,7 @@ from facegear.machine.layout import Role
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.statics import bearing_forces, mean_equilibrium
+from facegear.machine.supports import shaft_elements
 from facegear.parts.shafts import Segment
 from facegear.sharing.path_changes import with_scaled_bearings
 
@@ -182,3 +183,11 @@ def test_stiffer_bearings_and_shaft_move_the_pinion_less_under_its_load(public):
     assert mean_equilibrium(stiff).forces[0, 3] > mean_equilibrium(machine).forces[0, 3]
     tangent = at_mean_load(stiff).drive_line.seats[0].state
     assert np.allclose(tangent.stiffness, tangent.stiffness.T)
+
+
+def test_a_step_that_hardly_moves_anything_has_no_limit():
+    """Nearly unloaded machines warned of an overflow on the terminal."""
+    ((_, element),) = shaft_elements(machine_on({0: S1}).drive_line)
+    outer, inner = np.full((1, element.rows.shape[1]), 1e-315), np.zeros((1, element.inner.shape[1]))
+    with np.errstate(over="raise"):
+        assert element.longest_step(outer, inner) == np.inf
