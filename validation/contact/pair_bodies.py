@@ -29,6 +29,9 @@ FIXED_FACES = {
     "face_gear": ("rim_back", "cut_left", "cut_right"),
 }
 """Groups of faces that supports hold; the pinion's turn as one about its axis."""
+REACH = 2.0
+"""Largest gap of the faces that Kratos may close, in ways of the pinion's support along the normal. The edges
+of the other body would cut faces farther away: slivers that make its condensed equations ill-conditioned."""
 RING = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a square cell in their order round it."""
 OCTANTS = tuple((i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1))
@@ -97,10 +100,37 @@ class PairBodies:
         return TwoBodies(
             nodes=nodes,
             cubes=(_cut_cubes(pinion.hexes), count + _cut_cubes(gear.hexes)),
-            faces=(_cut_faces(contact_faces(pinion)), count + _cut_faces(contact_faces(gear))),
+            faces=(_cut_faces(self.close_faces(turn)), count + _cut_faces(contact_faces(gear))),
             support_displacement=support_displacement,
             materials=self.materials,
         )
+
+    def close_faces(self, turn: float) -> Integers:
+        """Return the faces of the pinion that can touch under a rotation of its support.
+
+        A node nearer to the gear than REACH times the way along the normal, in the unloaded pair, makes its
+        face one of them.
+
+        Parameters
+        ----------
+        turn : float
+            Rotation of the support, rad.
+
+        Returns
+        -------
+        (f, 9) array of int
+            Indices of the nodes of each face.
+        """
+        pinion, gear = self.teeth.values()
+        faces, points = contact_faces(pinion), self.node_positions("pinion")
+        others = self.node_positions("face_gear")[np.unique(contact_faces(gear))]
+        normal = np.cross(
+            points[faces[:, 5]] - points[faces[:, 3]], points[faces[:, 7]] - points[faces[:, 1]]
+        )
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        way = np.stack([_nearest(others, points[face]) - points[face] for face in faces])
+        gap = np.einsum("fnk,fk->fn", way, normal)
+        return np.asarray(faces[gap.min(axis=1) < REACH * turn * self.design.normal_arm])
 
     def root_stress(self, body: str, displacement: Array) -> float:
         """Return the largest tension down the fillet below the loaded flank; the ends of the face are left
@@ -191,6 +221,12 @@ def contact_faces(tooth: FeTooth) -> Integers:
     """
     side = LOADED_SIDE[tooth.body]
     return np.concatenate([tooth.faces[f"{name}_{side}"] for name in ("flank", "fillet")])
+
+
+def _nearest(points: Array, places: Array) -> Array:
+    """Return the point (m, 3), m, of many (n, 3) that is nearest to each place (m, 3)."""
+    distance = np.linalg.norm(places[:, None] - points, axis=-1)
+    return np.asarray(points[np.argmin(distance, axis=1)])
 
 
 def held_nodes(tooth: FeTooth) -> Integers:

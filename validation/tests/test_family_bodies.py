@@ -1,5 +1,6 @@
 """Helical and tapered pairs cut out for three programs: the teeth of the whole pairs, shorter; no run."""
 
+from dataclasses import replace
 from math import tan
 
 import numpy as np
@@ -11,7 +12,7 @@ from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.placement import body_rotation
 from facegear.teeth.surfaces import flank_points
 from validation.contact.family_peer import CONFIGS, family_pair, touching_place
-from validation.contact.pair_bodies import PairBodies, held_nodes
+from validation.contact.pair_bodies import PairBodies, contact_faces, held_nodes
 from validation.contact.pair_own import Answer
 from validation.contact.pair_peer import _row
 
@@ -105,3 +106,20 @@ def test_stiffness_is_force_along_the_normal_over_the_way_along_it(cut_out):
     answer = Answer(force * arm, way / arm, 0.0, 0.0, 0.0, 0.0)
     row = _row(cut_out, "medium", "facegear", 1, answer, 0.0, 0.0)
     assert row["stiffness_n_per_um"] == pytest.approx(1e-6 * force / way, rel=1e-12)
+
+
+def test_faces_that_kratos_may_close_lie_along_the_line_of_contact(cut_out):
+    pair = replace(cut_out, sizes=MeshSizes(1e-3, 1.5e-3, 4e-3))
+    pinion, width = pair.teeth["pinion"], pair.design.pinion.width
+    every = {tuple(face) for face in contact_faces(pinion)}
+    few, more = ({tuple(face) for face in pair.close_faces(turn)} for turn in (TURN / 4, TURN))
+    assert few < more < every
+    places = pinion.nodes[np.array(sorted(few))]
+    y = places[..., 1]
+    assert (y.min(), y.max()) == pytest.approx(pair.design.middle + np.array([-0.5, 0.5]) * width)
+    roll, middle, _ = touching_place(pair.design)
+    touch = flank_points(pair.design, roll, middle).position
+    assert np.linalg.norm(places - touch, axis=-1).min() < 1e-3
+    # across the line a gap of 20 um is some 0.9 mm away, and an element is 1 mm high
+    heights = np.hypot(places[..., 0], places[..., 2])[np.abs(y.mean(axis=1) - middle) < 1e-3]
+    assert np.abs(heights - np.hypot(touch[0], touch[2])).max() < 3e-3
