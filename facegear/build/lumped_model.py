@@ -20,8 +20,8 @@ from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
-from facegear.machine.mean_load import rolling_seat
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.rolling_seats import rolling_seat
 from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
 from facegear.schema.bodies import RunoutSection, SingleGear, SinglePinion

@@ -13,7 +13,7 @@ from facegear.build.rolling import nominal_state
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
-from facegear.machine.mean_load import body_on_tangent
+from facegear.machine.rolling_seats import body_on_tangent
 from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 from facegear.schema.bodies import (
     LIKE_ALL_GEARS,

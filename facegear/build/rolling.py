@@ -1,8 +1,7 @@
 """Rolling bearings in SI units, and shafts on them, from their sections of the config."""
 
-from collections.abc import Sequence
 from functools import lru_cache
-from math import degrees, radians
+from math import radians
 from string import ascii_uppercase
 
 import numpy as np
@@ -10,11 +9,8 @@ import scipy
 
 from facegear.arrays import Array
 from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
-from facegear.bearings.response import BALL_LIMIT, ROLLER_LIMIT
 from facegear.bearings.shaft import RollingShaft, ShaftState, Support, find_shaft_equilibrium, follow_pinion
 from facegear.errors import ConfigError, NotConverged
-from facegear.machine.placed_bearings import PlacedBearing
-from facegear.machine.statics import Equilibria
 from facegear.parts.shafts import Elasticity, Segment
 from facegear.rigid_body import MOTIONS
 from facegear.schema.rolling import BALLS, RollingSection
@@ -24,6 +20,8 @@ from facegear.schema.transmission import Transmission
 GROOVE_RATIO = 0.52
 """Radius of a groove over the ball's diameter, dimensionless, where none is given: the value for which
 ISO 281 prints its load ratings."""
+
+
 SLICES = 41
 """Slices of a roller where none are given: life of tilted rollers with logarithmic profile is then 6 % below
 that of 161, and displacements are off by less than 0.2 %."""
@@ -76,6 +74,8 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
 
 PARTS = (1.0, 0.1, 0.01, 0.0)
 """Parts of an estimated load that are tried one after the other, dimensionless."""
+
+
 LARGEST_PRELOAD = 0.05
 """Motion of a preloaded pair's inner rings over the smaller element diameter, dimensionless, within which its
 thrust is looked for."""
@@ -223,78 +223,3 @@ def _nominal_state(section: ShaftSection, force: float) -> ShaftState:
         except NotConverged:
             continue
     return follow_pinion(shaft, np.zeros(MOTIONS), np.zeros((len(shaft.supports), MOTIONS)))
-
-
-def placed_bearings(section: Transmission) -> list[PlacedBearing]:
-    """Return the rolling bearings of a machine, by its pinions.
-
-    Parameters
-    ----------
-    section : Transmission
-        Section `transmission` of the config.
-
-    Returns
-    -------
-    list of PlacedBearing
-        Bearings with the ratings that their sections give; empty where there are none.
-    """
-    bearings = []
-    for pinion, pinion_place in enumerate(section.pinions):
-        shaft = section.shaft_of(pinion_place)
-        if shaft is None or not shaft.is_rolling:
-            continue
-        key = pinion_place.name if pinion_place.name in section.shafts else pinion_place.role
-        for number, (support, part) in enumerate(
-            zip(rolling_shaft(shaft).supports, shaft.bearings, strict=True)
-        ):
-            if part.rolling is None or isinstance(support.bearing, np.ndarray):
-                continue
-            shoulder = part.rolling.shoulder_angle_deg
-            bearings.append(
-                PlacedBearing(
-                    key=f"transmission.shafts.{key}.bearings[{number}].rolling",
-                    pinion=pinion,
-                    number=number,
-                    name=pinion_place.name,
-                    bearing=support.bearing,
-                    load_rating=part.rolling.load_rating_n,
-                    fatigue_load_limit=part.rolling.fatigue_load_limit_n,
-                    shoulder=None if shoulder is None else radians(shoulder),
-                )
-            )
-    return bearings
-
-
-def require_loads(bearings: Sequence[PlacedBearing], at_rest: Equilibria, torque: float) -> None:
-    """Refuse bearings that are overloaded, or whose balls leave their shoulders.
-
-    Parameters
-    ----------
-    bearings : sequence of PlacedBearing
-        The bearings of a machine.
-    at_rest : Equilibria
-        An equilibrium of the machine.
-    torque : float
-        On an input pinion by each of its meshes, N m, for the message.
-
-    Raises
-    ------
-    ConfigError
-        For a pressure above the reference of ISO 76, a contact angle beyond the shoulder, and an angular
-        contact ball bearing whose balls press on the side without shoulder.
-    """
-    for bearing in bearings:
-        state, at_torque = bearing.state(at_rest), f"{bearing.name} at {torque:.4g} N m"
-        limit = BALL_LIMIT if isinstance(bearing.bearing, BallBearing) else ROLLER_LIMIT
-        pressure = float(state.pressures.max())
-        if pressure > limit:
-            requirement = f"loaded up to {1e-6 * limit:.0f} MPa, the reference of ISO 76"
-            raise ConfigError(bearing.key, f"{1e-6 * pressure:.0f} MPa on {at_torque}", requirement)
-        least, largest = state.contact_angles
-        angle = max(abs(least), abs(largest))
-        if bearing.shoulder is not None and angle > bearing.shoulder:
-            requirement = f"loaded up to shoulder_angle_deg = {degrees(bearing.shoulder):g}"
-            raise ConfigError(bearing.key, f"contact at {degrees(angle):.4g} deg on {at_torque}", requirement)
-        if state.is_on_wrong_side:
-            requirement = "pressed together by thrust or preload: its balls press where it has no shoulder"
-            raise ConfigError(bearing.key, f"contact at {degrees(least):.4g} deg on {at_torque}", requirement)

@@ -9,7 +9,7 @@ from facegear.arrays import Array
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.layout import Layout, Role, Side
 from facegear.machine.machine import Machine
-from facegear.machine.mean_load import scaled_seat
+from facegear.machine.rolling_seats import scaled_seat
 from facegear.sharing.groups import GroupKind, LoadGroup, MapOptions
 from facegear.sharing.mapped_machine import MappedMachine
 

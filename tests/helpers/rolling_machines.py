@@ -11,7 +11,8 @@ from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
 from facegear.machine.machine import Damping, Machine
-from facegear.machine.mean_load import rolling_seat, with_states
+from facegear.machine.mean_load import with_states
+from facegear.machine.rolling_seats import rolling_seat
 from facegear.machine.torques import balanced_torques
 from facegear.parts.shafts import Elasticity, Segment
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.bearings.life import Lubrication
 from facegear.build.machine import MachineInputs, with_torques
-from facegear.build.rolling import placed_bearings, require_loads
+from facegear.build.placed_bearings import placed_bearings, require_loads
 from facegear.errors import ConfigError, InvalidInput
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import Equilibria, mean_equilibrium

@@ -14,7 +14,8 @@ from facegear.machine.drive_line import DriveLine
 from facegear.machine.layout import Body
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.machine import Damping, OpenFlanks
-from facegear.machine.mean_load import at_mean_load, rolling_seat
+from facegear.machine.mean_load import at_mean_load
+from facegear.machine.rolling_seats import rolling_seat
 from facegear.machine.statics import equilibria, mean_equilibrium
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.parts.shafts import Elasticity, Segment
