@@ -25,9 +25,8 @@ TORQUE = 500.0
 """On the whole face, N m; the part that is cut out carries the same line load."""
 LEVELS = {"medium": (0.10, 0.60, 0.60), "fine": (0.06, 0.60, 0.60)}
 """Sizes of the meshes, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`."""
-KRATOS_LEVELS: Mapping[str, Collection[str]] = {"helical": (), "tapered": ("medium",)}
-"""Levels that Kratos solves, by kind of teeth. Its multigrid does not come to an end in minutes on the flanks
-of the helical pair, and the fine mesh takes minutes a pair."""
+KRATOS_LEVELS = ("medium",)
+"""Levels that Kratos solves, too: the fine one takes it minutes a pair."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +85,7 @@ def family_peer_study(
     folder: Path,
     threads: int,
     levels: Mapping[str, tuple[float, float, float]] = LEVELS,
-    kratos_levels: Mapping[str, Collection[str]] = KRATOS_LEVELS,
+    kratos_levels: Collection[str] = KRATOS_LEVELS,
     kinds: Collection[str] = tuple(CONFIGS),
 ) -> pd.DataFrame:
     """Compare three programs on the pairs of several kinds of teeth.
@@ -99,8 +98,8 @@ def family_peer_study(
         Number of threads.
     levels : Mapping[str, tuple[float, float, float]]
         Sizes of the meshes in modules by level, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`.
-    kratos_levels : Mapping[str, collection of str]
-        Levels that Kratos solves, too, by kind of teeth.
+    kratos_levels : collection of str
+        Levels that Kratos solves, too.
     kinds : collection of str
         Keys of CONFIGS.
 
@@ -127,7 +126,7 @@ def family_peer_study(
             folder / kind,
             threads,
             position=cut.position,
-            kratos_levels=kratos_levels[kind],
+            kratos_levels=kratos_levels,
         )
         table.insert(0, "teeth", kind)
         tables.append(table)

@@ -123,12 +123,12 @@ class PairBodies:
         """
         pinion, gear = self.teeth.values()
         faces, points = contact_faces(pinion), self.node_positions("pinion")
-        others = self.node_positions("face_gear")[np.unique(contact_faces(gear))]
+        gear_points = self.node_positions("face_gear")[np.unique(contact_faces(gear))]
         normal = np.cross(
             points[faces[:, 5]] - points[faces[:, 3]], points[faces[:, 7]] - points[faces[:, 1]]
         )
         normal /= np.linalg.norm(normal, axis=1)[:, None]
-        way = np.stack([_nearest(others, points[face]) - points[face] for face in faces])
+        way = np.stack([_nearest(gear_points, points[face]) - points[face] for face in faces])
         gap = np.einsum("fnk,fk->fn", way, normal)
         return np.asarray(faces[gap.min(axis=1) < REACH * turn * self.design.normal_arm])
 
@@ -223,9 +223,9 @@ def contact_faces(tooth: FeTooth) -> Integers:
     return np.concatenate([tooth.faces[f"{name}_{side}"] for name in ("flank", "fillet")])
 
 
-def _nearest(points: Array, places: Array) -> Array:
-    """Return the point (m, 3), m, of many (n, 3) that is nearest to each place (m, 3)."""
-    distance = np.linalg.norm(places[:, None] - points, axis=-1)
+def _nearest(points: Array, targets: Array) -> Array:
+    """Return the point (m, 3), m, of many (n, 3) that is nearest to each target (m, 3)."""
+    distance = np.linalg.norm(targets[:, None] - points, axis=-1)
     return np.asarray(points[np.argmin(distance, axis=1)])
 
 
