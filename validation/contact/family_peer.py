@@ -13,6 +13,7 @@ import pandas as pd
 
 import facegear
 from facegear.build.tooth_pair import pair
+from facegear.errors import FacegearError
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.family_contact import contact_line
@@ -73,8 +74,15 @@ def touching_place(design: PairDesign) -> tuple[float, float, float]:
     -------
     float, float, float
         Roll angle (rad), place y along the pinion's axis (m) and position (fraction of a pitch).
+
+    Raises
+    ------
+    FacegearError
+        If the flanks never touch.
     """
     flank, line = design.family.pinion_flanks[0], contact_line(design.family, 1)
+    if line is None:
+        raise FacegearError("the flanks of the pair never touch")
     s = contact_path(design.family, line).middle
     roll, y = (s + line.pinion_lead) * flank.cosine / flank.base_radius, float(line.pinion_y(s))
     angle = roll + flank.lead * (y - design.middle) / flank.base_radius - line.pinion_slope - flank.phase
