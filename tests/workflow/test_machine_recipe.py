@@ -11,11 +11,12 @@ from validation.references import INDEPENDENT, declarations
 STEPS = read_recipe("Add a feature of the machine")
 MOST = 12
 """Files that a feature with a section, a stage and a test may touch (issue 52)."""
-PADDED = """
+PADS = {"count": 24, "area_mm2": 400, "thickness_mm": 5, "young_modulus_gpa": 3}
+PADDED = f"""
 extends: harmonics_only.yaml
 case: padded
 reproduction: null
-thrust_pads: {count: 24, area_mm2: 400, thickness_mm: 5, young_modulus_gpa: 3}
+thrust_pads: {json.dumps(PADS)}
 """
 MOTION = """
 import numpy as np
@@ -60,6 +61,17 @@ assert not missing, missing
 """
     done = python(followed, "-c", code)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("section", ["tolerances", "search"])
+def test_varied_machines_refuse_the_feature_that_they_do_not_take(followed, section):
+    values = {"extends": f"config/{section}.yaml", "thrust_pads": PADS}
+    plain, padded = (
+        python(followed, "-c", f"import facegear; facegear.load({one}, None)")
+        for one in ({"extends": values["extends"]}, values)
+    )
+    assert plain.returncode == 0, plain.stderr
+    assert f'{section} = "given": must be left out beside thrust_pads' in padded.stderr.splitlines()[-1]
 
 
 def test_the_workflow_makes_the_stage_and_hands_it_to_the_machine(followed, tmp_path):

@@ -37,7 +37,10 @@ HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
 ELASTIC_GEARS = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
 """Face gears that bend."""
-BODIES = {**ELASTIC_GEARS, "casing": From("casing", "reduced", when=machine_conditions.casing)}
+BODIES = {
+    **ELASTIC_GEARS,
+    "casing": From("casing", "reduced", when=machine_conditions.casing),
+}
 """Sources of what every stage of the machine takes, at rest and in motion: face gears that bend, and a
 casing.
 """
