@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+from references import against, agrees
 
 from facegear.casing.mounted import Foot, mount
 from facegear.casing.reduction import Interface, Reduction, own_modes, reduce_casing
@@ -42,6 +43,12 @@ def series(first, second):
     return 1.0 / (1.0 / first + 1.0 / second)
 
 
+@against(
+    "analytic",
+    "springs in series",
+    capability="casing_loads",
+    module="facegear.machine.casing",
+)
 def test_a_casing_of_springs_is_bearings_in_series():
     layout = make_small_layout()
     names, places = ["p0", "p1", "p2"], [(0.09, 0, 0), (0, 0.09, 0), (-0.09, 0, 0)]
@@ -57,7 +64,7 @@ def test_a_casing_of_springs_is_bearings_in_series():
         bodies.append(Body(1.2, 6e-4, tuple(series(bearing, seat))))
     pinions = tuple(replace(pinion, body=body) for pinion, body in zip(layout.pinions, bodies, strict=True))
     soft = mean_equilibrium(make_small_machine(replace(layout, pinions=pinions))).forces
-    np.testing.assert_allclose(on_casing, soft, rtol=1e-7)
+    agrees("mesh forces, N", on_casing, soft, relative=1e-7)
 
 
 def test_seats_of_a_massless_casing_follow_the_bearings():
@@ -110,6 +117,12 @@ def mount_box(small_box, modes):
     )
 
 
+@against(
+    "second implementation",
+    "all rows of the casing's finite elements",
+    capability="casing casing_loads",
+    module="facegear.casing.reduction",
+)
 def test_all_modes_are_the_whole_elements(small_box):
     casing, seats, base = small_box
     reduction = reduce_casing(casing, [*seats, base], casing.size)
@@ -117,7 +130,7 @@ def test_all_modes_are_the_whole_elements(small_box):
     machine = make_small_machine(casing=place_on(mount_box(small_box, casing.size)))
     from_modes = loaded_modes(machine).frequencies[:20]
     whole = whole_machine_frequencies(small_box)[:20]
-    np.testing.assert_allclose(from_modes[1:], whole[1:], rtol=1e-8)
+    agrees("modes of the machine on the casing, Hz", from_modes[1:], whole[1:], relative=1e-8)
 
 
 def whole_machine_frequencies(small_box):
@@ -298,6 +311,12 @@ def test_a_shaft_that_tilts_has_the_statics_of_one_that_does_not():
     np.testing.assert_allclose(second.forces, first.forces, rtol=1e-8)
 
 
+@against(
+    "second implementation",
+    "active sets of springs, whole matrices",
+    capability="casing_loads",
+    module="facegear.machine.statics",
+)
 @pytest.mark.parametrize("seed", range(6))
 def test_random_casings_have_the_forces_of_active_sets(seed):
     """An independent answer: linear springs of closed flanks, whole matrices, until no set changes."""
@@ -311,7 +330,9 @@ def test_random_casings_have_the_forces_of_active_sets(seed):
     forces = forces_by_active_sets(machine)
     assert forces is not None
     settled = mean_equilibrium(machine).flank_forces[0]
-    np.testing.assert_allclose(settled, forces, rtol=1e-8, atol=1e-8 * forces.max())
+    largest = forces.max()
+    allowed = 1e-8 * (1.0 + forces / largest)
+    agrees("mesh forces over the largest", settled / largest, forces / largest, absolute=allowed)
 
 
 def test_negative_stiffness_and_free_casings_are_refused():
