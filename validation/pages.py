@@ -13,7 +13,7 @@ from pathlib import Path
 import pandas as pd
 
 from facegear.pipeline.table import listing
-from validation import bearing_sharing, sharing_advice
+from validation import bearing_sharing, kinds_of_teeth, sharing_advice
 from validation.mutation.modules import mutation_tables
 from validation.mutation.modules import rows as mutation_rows
 from validation.platforms import DIFFERENCES, OUTCOMES, outcomes_table, platforms_table
@@ -29,6 +29,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "mutants": lambda: mutation_tables(mutation_rows()),
     "stages": listing,
     "bearing sharing": lambda: bearing_sharing.page_table(pd.read_csv(bearing_sharing.TABLE)),
+    "kinds of teeth": lambda: kinds_of_teeth.page_table(pd.read_csv(kinds_of_teeth.TABLE)),
     "sharing advice": lambda: sharing_advice.advice_table(pd.read_csv(sharing_advice.TABLE)),
 }
 """Text of every generated block, by its name in the pages."""

@@ -13,6 +13,7 @@ import pandas as pd
 
 import facegear
 from facegear.build.tooth_pair import pair
+from facegear.errors import FacegearError
 from facegear.teeth.bounded_contact import contact_path
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.family_contact import contact_line
@@ -25,9 +26,8 @@ TORQUE = 500.0
 """On the whole face, N m; the part that is cut out carries the same line load."""
 LEVELS = {"medium": (0.10, 0.60, 0.60), "fine": (0.06, 0.60, 0.60)}
 """Sizes of the meshes, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`."""
-KRATOS_LEVELS: Mapping[str, Collection[str]] = {"helical": (), "tapered": ("medium",)}
-"""Levels that Kratos solves, by kind of teeth. Its multigrid does not come to an end in minutes on the flanks
-of the helical pair, and the fine mesh takes minutes a pair."""
+KRATOS_LEVELS = ("medium",)
+"""Levels that Kratos solves, too: the fine one takes it minutes a pair."""
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,15 @@ def touching_place(design: PairDesign) -> tuple[float, float, float]:
     -------
     float, float, float
         Roll angle (rad), place y along the pinion's axis (m) and position (fraction of a pitch).
+
+    Raises
+    ------
+    FacegearError
+        If the flanks never touch.
     """
     flank, line = design.family.pinion_flanks[0], contact_line(design.family, 1)
     if line is None:
-        raise ValueError("the flanks of this pair have no line of contact")
+        raise FacegearError("the flanks of the pair never touch")
     s = contact_path(design.family, line).middle
     roll, y = (s + line.pinion_lead) * flank.cosine / flank.base_radius, float(line.pinion_y(s))
     angle = roll + flank.lead * (y - design.middle) / flank.base_radius - line.pinion_slope - flank.phase
@@ -88,7 +93,7 @@ def family_peer_study(
     folder: Path,
     threads: int,
     levels: Mapping[str, tuple[float, float, float]] = LEVELS,
-    kratos_levels: Mapping[str, Collection[str]] = KRATOS_LEVELS,
+    kratos_levels: Collection[str] = KRATOS_LEVELS,
     kinds: Collection[str] = tuple(CONFIGS),
 ) -> pd.DataFrame:
     """Compare three programs on the pairs of several kinds of teeth.
@@ -101,8 +106,8 @@ def family_peer_study(
         Number of threads.
     levels : Mapping[str, tuple[float, float, float]]
         Sizes of the meshes in modules by level, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`.
-    kratos_levels : Mapping[str, collection of str]
-        Levels that Kratos solves, too, by kind of teeth.
+    kratos_levels : collection of str
+        Levels that Kratos solves, too.
     kinds : collection of str
         Keys of CONFIGS.
 
@@ -129,7 +134,7 @@ def family_peer_study(
             folder / kind,
             threads,
             position=cut.position,
-            kratos_levels=kratos_levels[kind],
+            kratos_levels=kratos_levels,
         )
         table.insert(0, "teeth", kind)
         tables.append(table)

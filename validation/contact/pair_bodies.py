@@ -223,9 +223,9 @@ def contact_faces(tooth: FeTooth) -> Integers:
     return np.concatenate([tooth.faces[f"{name}_{side}"] for name in ("flank", "fillet")])
 
 
-def _nearest(points: Array, starts: Array) -> Array:
-    """Return the point (m, 3), m, of many (n, 3) that is nearest to each place (m, 3)."""
-    distance = np.linalg.norm(starts[:, None] - points, axis=-1)
+def _nearest(points: Array, targets: Array) -> Array:
+    """Return the point (m, 3), m, of many (n, 3) that is nearest to each target (m, 3)."""
+    distance = np.linalg.norm(targets[:, None] - points, axis=-1)
     return np.asarray(points[np.argmin(distance, axis=1)])
 
 

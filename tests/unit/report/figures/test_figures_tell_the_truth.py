@@ -153,7 +153,11 @@ def test_names_of_the_edges_of_a_flank_stand_off_their_curves():
         "path_y": np.full(3, 0.265),
     }
     gap = {"gap_um": 7.8, "gear_radius_mm": 259.6, "gear_part": "tip edge", "pinion_part": "fillet"}
-    figure = draw(separation({"smallest_gap": gap}, {"gear_flank": np.stack(edges)}, contact))
+    spur = {"helix_angle": 0.0, "taper_angle": 0.0, "offset": 0.0, "shaft_angle": np.pi / 2}
+    spur |= {"pressure_angle": 0.4, "coast_pressure_angle": None}
+    figure = draw(
+        separation({"smallest_gap": gap, "design_si": spur}, {"gear_flank": np.stack(edges)}, contact)
+    )
     figure.canvas.draw()
     axes = figure.axes[0]
     names = {"tip edge", "end of the flank"}
