@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from references import against, agrees
 from rolling_bearings import ALL, P1, P2, P3, TAPERED, public_cases
 from scipy.optimize import linprog, minimize
 
@@ -31,49 +32,87 @@ def assert_balanced(state, load):
     assert np.abs((state.force - load) / ARMS).max() <= 2e-12 * size + rounding + 1e-15
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.equilibrium",
+)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_public_loads_move_bearings_by_their_printed_digits(case):
     state = find_equilibrium(case.bearing, case.load)
-    assert np.abs(state.motion - case.motion).max() <= 5.01e-11
-    assert state.hardest_load == pytest.approx(case.hardest, abs=5.01e-4)
+    agrees("motion, um, urad", state.motion * 1e6, case.motion * 1e6, absolute=5.01e-5)
+    agrees("load of the hardest element, N", state.hardest_load, case.hardest, absolute=5.01e-4)
     assert state.loaded_elements == case.count
-    assert state.zone == pytest.approx(case.zone, abs=np.radians(0.1))
+    agrees("loaded zone, degrees", np.degrees(state.zone), np.degrees(case.zone), absolute=0.1)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.response",
+)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_public_stiffness_has_its_printed_digits_and_nothing_else(case):
     stiffness = find_equilibrium(case.bearing, case.load).stiffness
-    zeros = 1e-9 * np.abs(stiffness).max()
-    assert (
-        np.abs(stiffness - case.stiffness) <= np.where(case.digits > 0.0, 1.01 * case.digits, zeros)
-    ).all()
+    printed = case.digits > 0.0
+    assert (np.abs(stiffness[~printed]) <= 1e-9 * np.abs(stiffness).max()).all()
+    agrees(
+        "stiffness over half of its last printed digit",
+        stiffness[printed] / case.digits[printed],
+        case.stiffness[printed] / case.digits[printed],
+        absolute=1.01,
+    )
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.equilibrium",
+)
 def test_hardest_contacts_of_public_loads_have_their_printed_pressure_and_angle():
     state = find_equilibrium(CASES[0].bearing, CASES[0].load)
-    assert np.allclose(state.pressures / 1e6, [2466.39, 2087.92], rtol=0, atol=5.01e-3)
+    agrees("largest pressures, MPa", np.array(state.pressures) / 1e6, [2466.39, 2087.92], absolute=5.01e-3)
     assert state.static_safety == pytest.approx((4200.0 / 2466.39) ** 3, rel=1e-5)
     hard = find_equilibrium(P2, CASES[7].load)
     hardest = hard.loads.element_inner[0].argmax()
-    assert np.degrees(hard.loads.inner_angle[0, hardest]) == pytest.approx(22.2522, abs=5.01e-5)
+    angle = np.degrees(hard.loads.inner_angle[0, hardest])
+    agrees("contact angle of the hardest ball, degrees", angle, 22.2522, absolute=5.01e-5)
     rollers = find_equilibrium(P3, CASES[10].load)
-    assert rollers.loads.inner.max() * P3.slices / 11.2 == pytest.approx(492.263, abs=5.01e-4)
+    line_load = rollers.loads.inner.max() * P3.slices / 11.2
+    agrees("load of the hardest slice, N/mm", line_load, 492.263, absolute=5.01e-4)
 
 
+@against(
+    "third-party program",
+    "commercial program, quoted by the repository minzhun/ISO16281",
+    capability="bearing_life",
+    module="facegear.bearings.equilibrium",
+)
 def test_a_commercial_program_moves_a_radially_loaded_bearing_by_as_much():
     """Numbers that a public repository quotes (minzhun/ISO16281); it has 1.48 in place of 1.48096."""
     bearing = BallBearing(7, 11.5e-3, 43.5e-3, groove_ratio_outer=0.53, young=210e9)
     radial, axial = np.zeros(5), np.zeros(5)
     radial[0], axial[2] = 1000.0, 1000.0
-    assert find_equilibrium(bearing, radial).motion[0] * 1e6 == pytest.approx(15.1101, rel=1e-4)
-    assert find_equilibrium(bearing, axial).motion[2] * 1e6 == pytest.approx(133.538, rel=1e-4)
+    across, along = find_equilibrium(bearing, radial).motion[0], find_equilibrium(bearing, axial).motion[2]
+    agrees("radial motion under 1000 N, um", across * 1e6, 15.1101, relative=1e-4)
+    agrees("axial motion under 1000 N, um", along * 1e6, 133.538, relative=1e-4)
     loose = replace(bearing, clearance=10e-6)
-    assert find_equilibrium(loose, radial).motion[0] * 1e6 == pytest.approx(21.223, rel=1e-4)
+    across = find_equilibrium(loose, radial).motion[0]
+    agrees("radial motion with clearance, um", across * 1e6, 21.223, relative=1e-4)
     # The program measures axially from the middle of the axial clearance.
     beyond = find_equilibrium(loose, axial).motion[2] * 1e6
-    assert beyond == pytest.approx(149.1717, rel=1e-4)
+    agrees("axial motion with clearance, um", beyond, 149.1717, relative=1e-4)
 
 
+@against(
+    "analytic",
+    "Stribeck's number: integrals of the load over the zone",
+    capability="bearing_life",
+    module="facegear.bearings.equilibrium",
+)
 @pytest.mark.parametrize(
     ("bearing", "count", "factor"),
     [
@@ -89,7 +128,8 @@ def test_the_hardest_element_carries_stribecks_share(bearing, count, factor):
     load = np.array([10.0 if count == 1000 else 3000.0, 0.0, 0.0, 0.0, 0.0])
     state = find_equilibrium(bearing, load)
     # Contact angles change by the load, which the closed forms of balls leave out.
-    assert state.hardest_load * count / load[0] == pytest.approx(factor, rel=1e-4)
+    share = state.hardest_load * count / load[0]
+    agrees("hardest element's load over the mean of all", share, factor, relative=1e-4)
 
 
 @settings(deadline=None)
@@ -159,6 +199,12 @@ def test_a_tapered_bearing_holds_a_load_exactly_where_its_normals_can(direction,
         assert_balanced(find_equilibrium(bearing, load), load)
 
 
+@against(
+    "third-party program",
+    "SciPy: minimum of the energy",
+    capability="bearing_life",
+    module="facegear.bearings.equilibrium",
+)
 @pytest.mark.parametrize("name", ["P1", "P2", "P3", "tapered"])
 def test_scipys_minimum_of_the_energy_is_the_same_motion(name):
     bearing = replace(ALL[name], clearance=5e-6)
@@ -172,7 +218,8 @@ def test_scipys_minimum_of_the_energy_is_the_same_motion(name):
     found = minimize(energy, np.ones(5), jac=True, method="BFGS", options={"gtol": 1e-11, "maxiter": 2000})
     motion = find_equilibrium(bearing, load).motion
     counts = np.array([True, True, name != "P3", True, True])
-    assert np.abs((found.x * scale - motion) * ARMS)[counts].max() < 1e-9
+    differences = (found.x * scale - motion) * ARMS * 1e6
+    agrees("motion at the rings less SciPy's, um", differences[counts], 0.0, absolute=1e-3)
 
 
 @settings(deadline=None)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 from rolling_bearings import P1, P2, P3, TAPERED, public_cases
 
 from facegear.bearings.elements import BallBearing, RollerBearing
@@ -31,25 +32,44 @@ CASES = public_cases()
 RADIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 
+@against(
+    "external source",
+    "ISO 281, table of the factors f_c of ball bearings",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 @pytest.mark.parametrize(
     ("gamma", "factor"), [(0.05, 46.7), (0.10, 55.5), (0.14, 58.8), (0.20, 59.9), (0.30, 56.0), (0.40, 48.4)]
 )
 def test_factors_of_ball_bearings_are_those_of_the_printed_table(gamma, factor):
     """ISO 281, table 2; the last two as a public program prints them."""
     bearing = BallBearing(2, 10e-3, 10e-3 / gamma)
-    assert load_rating(bearing) / (1.3 * 2 ** (2 / 3) * 10**1.8) == pytest.approx(factor, abs=0.0501)
+    size = 1.3 * 2 ** (2 / 3) * 10**1.8
+    agrees("factor f_c", load_rating(bearing) / size, factor, absolute=0.0501)
 
 
+@against(
+    "external source",
+    "ISO 281, table of the factors f_c of roller bearings",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 @pytest.mark.parametrize(("gamma", "factor"), [(0.05, 74.1), (0.10, 84.2), (0.14, 87.7), (0.20, 88.7)])
 def test_factors_of_roller_bearings_are_those_of_the_printed_table(gamma, factor):
     bearing = RollerBearing(2, 10e-3, 10e-3 / gamma, effective_length=10e-3)
     size = 1.1 * 10 ** (7 / 9) * 2**0.75 * 10 ** (29 / 27)
-    assert load_rating(bearing) / size == pytest.approx(factor, abs=0.0501)
+    agrees("factor f_c", load_rating(bearing) / size, factor, absolute=0.0501)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 def test_load_ratings_of_public_bearings_have_their_printed_digits():
     ratings = [load_rating(bearing) for bearing in (P1, P2, P3)]
-    assert np.allclose(ratings, [35098.28, 31087.36, 70003.07], rtol=0, atol=5.01e-3)
+    agrees("load ratings, N", ratings, [35098.28, 31087.36, 70003.07], absolute=5.01e-3)
 
 
 def test_balls_above_an_inch_grow_in_rating_more_slowly_without_a_jump():
@@ -57,18 +77,31 @@ def test_balls_above_an_inch_grow_in_rating_more_slowly_without_a_jump():
     assert large == pytest.approx(small, rel=2e-4)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_reference_lives_of_public_loads_have_their_printed_digits(case):
     state = find_equilibrium(case.bearing, case.load)
-    assert reference_life(case.bearing, state.loads)[0] == pytest.approx(case.life, rel=4e-6)
+    life = reference_life(case.bearing, state.loads)[0]
+    agrees("reference life L10r, million turns", life, case.life, relative=4e-6)
 
 
+@against(
+    "analytic",
+    "basic life of ISO 281",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 def test_reference_life_of_many_balls_without_clearance_is_the_basic_life():
     """Rounding of the standards' factors remains: 0.407 and 0.389 for 0.40681 and 0.38954."""
     bearing = replace(P1, elements=200, pitch_diameter=1.4, clearance=0.0)
     force = 0.01 * load_rating(bearing)
     reference = reference_life(bearing, find_equilibrium(bearing, force * RADIAL).loads)[0]
-    assert reference / basic_life(bearing, np.array(force)) == pytest.approx(1.0, abs=2e-3)
+    agrees("L10r over L10", reference / basic_life(bearing, np.array(force)), 1.0, absolute=2e-3)
 
 
 @pytest.mark.parametrize(("life", "load"), [(0.9925, 1.0025)])
@@ -107,14 +140,20 @@ def test_edge_factors_are_one_in_the_middle_and_rise_to_both_edges_alike():
     assert (np.diff(factors[20:]) > 0.0).all()
 
 
+@against(
+    "third-party program",
+    "commercial program, quoted by the repository minzhun/ISO16281",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 def test_a_commercial_programs_lives_of_a_ball_bearing():
     """Quoted by a public repository (minzhun/ISO16281), with its C of 23 400 N; its 1.48 makes 2e-4."""
     bearing = BallBearing(7, 11.5e-3, 43.5e-3, groove_ratio_outer=0.53, young=210e9)
     radial = reference_life(bearing, find_equilibrium(bearing, 1000.0 * RADIAL).loads, 23_400.0)[0]
     thrust = np.array([0.0, 0.0, 1000.0, 0.0, 0.0])
     axial = reference_life(bearing, find_equilibrium(bearing, thrust).loads, 23_400.0)[0]
-    assert radial == pytest.approx(13163.0, rel=1e-4)
-    assert axial == pytest.approx(2222.73, rel=1e-4)
+    agrees("life under 1000 N across, million turns", radial, 13163.0, relative=1e-4)
+    agrees("life under 1000 N along, million turns", axial, 2222.73, relative=1e-4)
 
 
 def test_the_ring_that_stands_still_is_worn_on_one_side():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.bearings.life import reference_life
 from facegear.bearings.response import element_loads
@@ -65,25 +66,47 @@ def machines():
     return {seat: make_machine(seat) for seat in FORCES}
 
 
+@against(
+    "second implementation",
+    "public machine on rolling bearings and casing: a program of its own",
+    capability="casing_loads",
+    module="facegear.machine.statics",
+)
 @pytest.mark.parametrize("seat", list(FORCES))
 def test_published_mesh_forces(machines, seat):
     forces = np.abs(mean_equilibrium(machines[seat]).forces[0])
-    np.testing.assert_allclose(forces[:4], FORCES[seat], atol=2e-3)
+    agrees(f"mesh forces on seats: {seat}, N", forces[:4], FORCES[seat], absolute=2e-3)
 
 
+@against(
+    "second implementation",
+    "public machine on rolling bearings and casing: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 @pytest.mark.parametrize("seat", list(FORCES))
 def test_published_loads_and_lives_of_the_bearings(machines, seat):
     shaft = mean_equilibrium(machines[seat]).shafts[0]
-    np.testing.assert_allclose(shaft.forces[0, :, :3], BEARINGS[seat], atol=2e-3)
-    for bearing, motion, life in zip((P1, P3), shaft.rings[0], LIVES[seat], strict=True):
-        loads = element_loads(bearing, motion[None])
-        assert float(reference_life(bearing, loads)[0]) == pytest.approx(life, rel=5e-6)
+    agrees(
+        f"loads of the bearings on seats: {seat}, N", shaft.forces[0, :, :3], BEARINGS[seat], absolute=2e-3
+    )
+    lives = [
+        reference_life(bearing, element_loads(bearing, motion[None]))[0]
+        for bearing, motion in zip((P1, P3), shaft.rings[0], strict=True)
+    ]
+    agrees(f"L10r on seats: {seat}, million turns", lives, LIVES[seat], relative=5e-6)
 
 
+@against(
+    "second implementation",
+    "public machine on rolling bearings and casing: a program of its own",
+    capability="casing_loads",
+    module="facegear.machine.loaded_modes",
+)
 @pytest.mark.parametrize("seat", list(FORCES))
 def test_published_tangent_modes(machines, seat):
     frequencies = loaded_modes(machines[seat]).frequencies[:7]
-    np.testing.assert_allclose(frequencies, MODES[seat], atol=2e-3)
+    agrees(f"modes on seats: {seat}, Hz", frequencies, MODES[seat], absolute=2e-3)
 
 
 def test_the_base_carries_the_torques(machines):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import against, agrees
 from rolling_bearings import P1, P2, P3
 from rolling_machines import MESH_STIFFNESS, S1, STEEL, machine_on, random_machine, supports_of
 from whole_energy import WholeMachine
@@ -28,27 +29,47 @@ def public():
     return machine, mean_equilibrium(machine)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.machine.statics",
+)
 def test_mesh_forces_on_rolling_bearings_are_the_public_numbers(public):
     lower, upper = np.abs(public[1].forces[0]).reshape(2, 3)
-    assert np.allclose(lower, [10424.510, 4612.010, 5812.501], rtol=0, atol=5.01e-4)
-    assert np.allclose(upper, [26354.754, 4612.010, 5812.501], rtol=0, atol=5.01e-4)
+    agrees("forces of the lower meshes, N", lower, [10424.510, 4612.010, 5812.501], absolute=5.01e-4)
+    agrees("forces of the upper meshes, N", upper, [26354.754, 4612.010, 5812.501], absolute=5.01e-4)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="bearing_life",
+    module="facegear.bearings.life",
+)
 def test_both_bearings_carry_the_public_loads_and_have_the_public_lives(public):
     loads = public[1].shafts[0]
     first, second = loads.forces[0]
-    assert np.allclose(first[:3], [-7858.977, -3663.779, 0.0], rtol=0, atol=5.01e-4)
-    assert np.allclose(second[:3], [-6578.727, -3068.632, 0.0], rtol=0, atol=5.01e-4)
+    agrees("load of the ball bearing, N", first[:3], [-7858.977, -3663.779, 0.0], absolute=5.01e-4)
+    agrees("load of the roller bearing, N", second[:3], [-6578.727, -3068.632, 0.0], absolute=5.01e-4)
     lives = [
         reference_life(bearing, element_loads(bearing, ring[None]))[0]
         for bearing, ring in zip((P1, P3), loads.rings[0], strict=True)
     ]
-    assert np.allclose(lives, [61.8026, 3957.77], rtol=2e-6)
+    agrees("reference lives L10r, million turns", lives, [61.8026, 3957.77], relative=2e-6)
 
 
+@against(
+    "second implementation",
+    "public bearings: a program of its own",
+    capability="modal",
+    module="facegear.machine.loaded_modes",
+)
 def test_tangent_modes_are_the_public_numbers(public):
     expected = [0.0, 621.301, 1266.245, 1452.879, 1452.879, 1520.109, 1556.023]
-    assert np.allclose(loaded_modes(public[0]).frequencies[:7], expected, rtol=0, atol=5.01e-4)
+    agrees(
+        "modes about the mean load, Hz", loaded_modes(public[0]).frequencies[:7], expected, absolute=5.01e-4
+    )
 
 
 def test_the_pinion_loads_its_shaft_with_what_its_bearings_carry(public):
@@ -57,6 +78,12 @@ def test_the_pinion_loads_its_shaft_with_what_its_bearings_carry(public):
     assert np.allclose(on_shaft, at_rest.shafts[0].forces[0, :, :3].sum(axis=0), rtol=0, atol=1e-8)
 
 
+@against(
+    "second implementation",
+    "Newton's method over beam elements",
+    capability="bearing_life",
+    module="facegear.machine.statics",
+)
 @pytest.mark.parametrize("seed", range(10))
 def test_statics_and_tangents_agree_with_newtons_method_over_beams(seed):
     machine = at_mean_load(random_machine(seed))
@@ -65,9 +92,10 @@ def test_statics_and_tangents_agree_with_newtons_method_over_beams(seed):
     coordinates = whole.settle(gaps)
     flanks, loads = whole.forces(coordinates, gaps)
     size = flanks.max()
-    assert np.allclose(found.flank_forces[0], flanks, rtol=0, atol=1e-8 * size)
+    agrees("mesh forces over the largest", found.flank_forces[0] / size, flanks / size, absolute=1e-8)
     for pinion, shaft in found.shafts.items():
-        assert np.allclose(shaft.forces[0], loads[pinion], rtol=0, atol=1e-8 * size)
+        computed, expected = shaft.forces[0] / size, loads[pinion] / size
+        agrees("loads of the bearings over the largest mesh force", computed, expected, absolute=1e-8)
     frequencies, tangent_frequencies = whole.frequencies(coordinates, gaps), loaded_modes(machine).frequencies
     is_elastic = frequencies > 1.0
     assert np.allclose(tangent_frequencies[is_elastic], frequencies[is_elastic], rtol=1e-8, atol=0)

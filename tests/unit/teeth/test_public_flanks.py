@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 from public_teeth import MM, NAMES, public_design, public_numbers
+from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.teeth.family_limits import family_limits, singular_quadratic, tip_land
@@ -40,6 +41,12 @@ def test_helicoids_have_the_public_base_cylinders_and_thickness(name, side):
     assert abs(family.pinion_pitch_radius - numbers["pinion pitch radius mm"] * MM) < LENGTH
 
 
+@against(
+    "second implementation",
+    "public designs of the family",
+    capability="geometry",
+    module="facegear.teeth.generated_flank",
+)
 @pytest.mark.parametrize("name", NAMES)
 def test_flank_points_and_normals_are_the_public_ones(name):
     family, numbers, compared = public_design(name), public_numbers(name), 0
@@ -51,10 +58,11 @@ def test_flank_points_and_normals_are_the_public_ones(name):
         height = family.gear_tip.height(radius) - float(found[3]) * family.rack.normal_module
         psi, s = flank.parameters_at(radius, height)
         assert abs(height - value["z_mm"] * MM) < LENGTH
-        assert abs(psi - value["psi_rad"]) < ANGLE
-        assert abs(s - value["s_mm"] * MM) < LENGTH
-        assert abs(polar_angle(flank.point(psi, s)) - value["gear_angle_rad"]) < ANGLE
-        assert np.abs(flank.normal(psi, s) - value["normal"]).max() < ANGLE
+        agrees("contact parameter psi, rad", psi, value["psi_rad"], absolute=ANGLE)
+        agrees("generator parameter s, m", s, value["s_mm"] * MM, absolute=LENGTH)
+        angle = polar_angle(flank.point(psi, s))
+        agrees("gear angle of a flank point, rad", angle, value["gear_angle_rad"], absolute=ANGLE)
+        agrees("normal of the flank", flank.normal(psi, s), value["normal"], absolute=ANGLE)
         compared += 1
     assert compared == 5
 
@@ -69,12 +77,18 @@ def test_a_place_that_no_flank_has_is_named_by_its_radius(radius_mm):
         gear_flank(family, 1).parameters_at(radii, heights)
 
 
+@against(
+    "second implementation",
+    "public designs of the family",
+    capability="geometry",
+    module="facegear.teeth.family_limits",
+)
 @CASES
 def test_inner_limits_and_their_reasons_are_the_public_ones(name, side):
     start = family_limits(public_design(name)).starts[SIDES[side] < 0]
     radius, reason = public_numbers(name)[f"{side} inner limit mm"]
     assert start.reason == reason
-    assert abs(start.radius - radius * MM) < LENGTH
+    agrees("inner limit, m", start.radius, radius * MM, absolute=LENGTH)
 
 
 @CASES
@@ -105,6 +119,12 @@ def test_tip_and_root_heights_are_the_public_ones(name):
     assert abs(lowest[2] - numbers["root height z at mean radius mm"] * MM) < LENGTH
 
 
+@against(
+    "second implementation",
+    "public designs of the family",
+    capability="geometry",
+    module="facegear.teeth.generated_fillet",
+)
 @CASES
 def test_fillets_begin_and_bend_as_the_public_ones(name, side):
     family, compared = public_design(name), 0
@@ -115,9 +135,11 @@ def test_fillets_begin_and_bend_as_the_public_ones(name, side):
             continue
         radius = float(found[1]) * MM
         start = fillet.point(fillet.y_at(radius, 0.0), 0.0)
-        assert abs(start[2] - value["start_z_mm"] * MM) < LENGTH
-        assert abs(polar_angle(start) - value["start_gear_angle_rad"]) < ANGLE
-        assert abs(fillet.smallest_radius(radius) - value["smallest_radius_mm"] * MM) < 2e-10
+        agrees("height where the fillet begins, m", start[2], value["start_z_mm"] * MM, absolute=LENGTH)
+        angle = polar_angle(start)
+        agrees("gear angle of its beginning, rad", angle, value["start_gear_angle_rad"], absolute=ANGLE)
+        smallest = fillet.smallest_radius(radius)
+        agrees("smallest radius of the fillet, m", smallest, value["smallest_radius_mm"] * MM, absolute=2e-10)
         compared += 1
     assert compared == 3
 
