@@ -74,7 +74,7 @@ def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, fou
 def test_an_offset_parts_the_root_stress_of_both_flanks_and_each_is_given(bodies, found):
     """An offset of 50 um counted for both flanks alike, 652 and 704 MPa at 1000 N m."""
     flanks = dict(zip(BODIES, (from_arrays(to_arrays(body)) for body in bodies), strict=True))
-    stress = root_contents(4 * [flanks], found["loads"], dict.fromkeys(BODIES, 0.0))
+    stress = root_contents(4 * [flanks], found["loads"], 4 * [dict.fromkeys(BODIES, 0.0)])
     message = stress["by_flank"].set_index(["gear", "flank", "body", "fillet"])["largest_mpa"]
     drive, back = (message["upper", flank, "face_gear", "loaded"] for flank in FLANKS)
     assert back > 1.03 * drive
