@@ -9,10 +9,7 @@ import scipy.linalg
 from free_machines import natural_modes
 from lumped_machines import make_layout as make_spur_layout
 from lumped_machines import make_machine as make_spur_machine
-from public_casing import mount_public
 from public_teeth import NAMES, PARAMETERS, public_design, public_numbers
-from rolling_machines import S1, machine_on, public_layout
-from seated_machines import make_small_layout, make_small_machine, place_on
 from wrench_machines import (
     MESH,
     Teeth,
@@ -30,7 +27,6 @@ from wrench_machines import (
 
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
-from facegear.machine.casing import body_axes
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.flanks import flank_edges, flank_law
 from facegear.machine.imperfections import perfect
@@ -418,47 +414,3 @@ def test_rows_of_spur_teeth_are_those_of_their_closed_form_bit_for_bit(sides, be
     assert np.array_equal(
         layout.kinematics.flank_rows(layout), np.concatenate([apart + along, apart - along])
     )
-
-
-@pytest.mark.parametrize("helix", [12.0, -12.0])
-def test_rolling_bearings_carry_the_whole_wrench_of_a_helical_pinion(helix):
-    teeth = Teeth(20, 60, 3e-3, (radians(25), radians(23)), radians(helix), radians(1), middle=0.095)
-    spur = public_layout()
-    layout = make_layout(teeth, spur.pinions, spur.gears)
-    machine = machine_on({0: S1, 2: S1}, (600.0, 0.0, 0.0), layout, {0: 1.5e-3, 2: 1.5e-3})
-    found = mean_equilibrium(machine)
-    wrenches = -flank_rows(machine, teeth).T @ found.flank_forces[0]
-    size = found.flank_forces.max()
-    for pinion in (0, 2):
-        loads = found.shafts[pinion].forces[0]
-        carried = sum(load @ carry_motion(at - 0.06) for load, at in zip(loads, (0.01, 0.12), strict=True))
-        agree(carried, wrenches[machine.drive_line.motions(pinion)], absolute=1e-9 * size)
-    assert abs(wrenches[2]) > 0.1 * size
-
-
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("tilts", [False, True])
-def test_no_flank_feels_a_casing_that_moves_as_a_whole_with_all_bodies(seed, tilts):
-    rng = np.random.default_rng([60, seed])
-    spur = make_small_layout()
-    teeth = replace(random_teeth(rng), pinion=20, gear=60)
-    gears = spur.gears
-    if tilts:
-        gears = tuple(replace(g, body=replace(g.body, tilt=Tilt(0.3, 1e7, 0.01))) for g in gears)
-    layout = make_layout(teeth, spur.pinions, gears)
-    machine = make_small_machine(layout, place_on(mount_public(modes=0), layout))
-    casing, linear = machine.casing, machine.linear
-    shift, turn = rng.normal(size=3) * 1e-3, rng.normal(size=3) * 1e-2
-    moved = np.zeros(linear.size)
-    first = linear.size - casing.size
-    for at in casing.mounted.seats.values():
-        number = at.start // 6
-        seat = shift + np.cross(turn, casing.mounted.seat_positions[number])
-        moved[first + at.start : first + at.stop] = [*seat, *turn]
-    moved[:first] = casing.relative_motions(linear.labels[:first], None) @ moved[first:]
-    # Bodies turn with the rest about their own axes, which the casing leaves free.
-    for body in range(len(layout.bodies)):
-        own = body_axes(layout, body)[0][2]
-        ahead = -1.0 if body < 3 else layout.gears[body - 3].sign
-        moved[4 * body + 3] = ahead * turn @ own
-    assert np.abs(linear.rows @ moved).max() < 1e-12
