@@ -14,7 +14,7 @@ from facegear.report.figures.contact import close_pitch, contact_pattern
 from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
 from facegear.report.figures.motion import deflections, drawn_machine
-from facegear.report.figures.sharing import sharing_figure
+from facegear.report.figures.sharing import bearing_figure, sharing_figure
 from facegear.report.figures.teeth import separation
 
 
@@ -213,3 +213,18 @@ def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
     assert len(legend.texts) == 9
     assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
     plt.close(figure)
+
+
+def test_load_sharing_over_bearings_has_no_curve_of_kinematics_that_were_not_solved():
+    """Machines with other than spur teeth know no printed kinematics; the legend named their curves."""
+    rows = [
+        (kinematics, role, stiffness, kind, 1.2)
+        for kinematics in ("geometric", "printed")
+        for role in ("inputs", "idlers")
+        for kind in ("inputs", "idlers")
+        for stiffness in (1e7, 1e8)
+    ]
+    scan = pd.DataFrame(rows, columns=["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"])
+    geometric = scan[scan["kinematics"] == "geometric"]
+    for table, count in ((scan, 4), (geometric, 2)):
+        assert [len(panel.marks) for panel in bearing_figure(table).panels] == [count, count]
