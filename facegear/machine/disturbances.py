@@ -188,10 +188,10 @@ class MeshFriction:
         (2 meshes, parts, 2, orders) array
             Dimensionless.
         """
-        mirrored = self.ratios if self.back is None else self.back
+        mirror_ratios = self.ratios if self.back is None else self.back
         parts = self.ratios.shape[1]
         mirror = MIRROR[:parts, None, None] * np.array([-1.0, 1.0])[:, None]
-        flank_series = np.concatenate([self.ratios, mirrored * mirror])
+        flank_series = np.concatenate([self.ratios, mirror_ratios * mirror])
         lagged_series = np.empty_like(flank_series)
         for flank, lag in zip(np.ndindex(flank_series.shape[:2]), np.repeat(lags, parts), strict=True):
             series = Harmonics(*flank_series[flank]).shift(float(lag))
@@ -302,14 +302,14 @@ def _add_wrenches(row: Array, layout: Layout, kind: ToothKind, mesh: tuple[int, 
     (_, across, axis), arm = lean, layout.pinion_arm
     cosine, sine = axis[1:]
     # Force and moment on the pinion along tangent, gear axis and outwards, for one of each part.
-    none = np.zeros(3)
+    zero = np.zeros(3)
     wrenches = {
-        0: (np.array([side, 0.0, 0.0]), none),
-        1: (np.array([0.0, 0.0, 1.0 / sine]), none),
-        2: (np.array([0.0, side, -side * cosine / sine]), none),
-        3: (none, -arm * axis),
-        5: (none, np.array([side * arm, 0.0, 0.0])),
-        6: (none, side * arm * across),
+        0: (np.array([side, 0.0, 0.0]), zero),
+        1: (np.array([0.0, 0.0, 1.0 / sine]), zero),
+        2: (np.array([0.0, side, -side * cosine / sine]), zero),
+        3: (zero, -arm * axis),
+        5: (zero, np.array([side * arm, 0.0, 0.0])),
+        6: (zero, side * arm * across),
     }
     for part, (force, moment) in wrenches.items():
         row[part, pinion : pinion + 3] = lean @ force

@@ -42,7 +42,7 @@ class Wrenches:
         self.moment[:, :, 1, 1, 0] += LEVER * SIZE
 
     def friction(self, machine, teeth):
-        """The same as ratios of the machine."""
+        """Return the wrenches as ratios of the machine."""
         layout, both = machine.layout, []
         for number, shape in enumerate((teeth, mirrored(teeth))):
             ratios = []
