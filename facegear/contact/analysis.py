@@ -178,6 +178,21 @@ class ContactAnalysis:
         ]
 
     @cached_property
+    def stored_pressure(self) -> dict[str, AnyArray]:
+        """Arrays of the pressure file: PRESSURE_ARRAYS of the upper gear's drive flank, with those of the
+        other pairs for teeth other than spur ones, see `pattern.pressure_of_flanks`.
+        """
+        if self.models[0].design.is_spur:
+            return self.pressure[0]
+        arrays = {**self.pressure[0], "flank_variant": self.numbers}
+        for number, (pressure, table) in enumerate(zip(self.pressure[1:], self.ltca[1:], strict=True), 1):
+            unloaded_error = dict(zip(table["position"], 1e-6 * table["unloaded_ste_um"], strict=True))
+            errors = [unloaded_error[position] for position in pressure["contact_position"].tolist()]
+            arrays |= {f"{number}_{name}": values for name, values in pressure.items()}
+            arrays[f"{number}_unloaded_m"] = np.array(errors)
+        return arrays
+
+    @cached_property
     def wrenches(self) -> list[pd.DataFrame]:
         """Force and moment of the pinion on the gear, by pair, columns WRENCH_COLUMNS of `nodal_loads`."""
         return [

@@ -278,7 +278,7 @@ class Machine:
         """Directions (rows, n) of all forces that excite motion beside those of the flanks.
 
         First the external forces, normalised; then one row for each mesh and each part of friction
-        (`disturbances.PARTS`), where there is friction; then one normalised row for each periodic torque,
+        (`disturbances.parts_of`), where there is friction; then one normalised row for each periodic torque,
         without its rigid rotation. Rows that are zero are left out, except those of friction.
         """
         linear = self.linear
@@ -286,7 +286,8 @@ class Machine:
         if linear.forces.any():
             pushes.append(linear.forces[None] / np.linalg.norm(linear.forces))
         if self.friction is not None:
-            pushes.append(linear.over_all(friction_rows(self.layout)).reshape(-1, linear.size))
+            rows = friction_rows(self.layout, linear, self.drive_line)
+            pushes.append(rows.reshape(-1, linear.size))
         for excitation in self.excitations:
             force = self.straining_torque(excitation.body)
             if (size := float(np.linalg.norm(force))) > 0.0:

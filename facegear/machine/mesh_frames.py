@@ -170,6 +170,24 @@ class ToothKind:
         motion = self._motion
         return self.pitch_radius * motion.sine + sign * self._rolling_place(sign) * motion.cosine
 
+    def face_middle(self, sign: float) -> Vector:
+        """Return the middle of the pinion's face at a gear's mesh.
+
+        Parameters
+        ----------
+        sign : float
+            1 for the upper, -1 for the lower gear.
+
+        Returns
+        -------
+        tuple of float
+            Along tangent, gear axis and outwards, from the gear's axis and over the pitch plane, m.
+        """
+        family = self.family if sign > 0.0 else self.family.below
+        middle = np.array([family.motion.offset, 0.0, 0.0]) + family.middle * family.motion.basis[1]
+        x, y, z = middle.tolist()
+        return sign * x, -sign * z - sign * self.pitch_height(sign), y
+
     def frames(self, sign: float) -> tuple[FlankFrame, FlankFrame]:
         """Return the lines of contact of the drive and the back flank of a gear's meshes.
 

@@ -337,8 +337,8 @@ def judge(
         its speed (rpm).
         """
         section = parse(LubricationSection, lubrication, label)
-        pair = teeth.pair(section, question.every_place)
-        return friction_quantities(lumped_machine, speed, loads, pair, limits_of(section))
+        pairs = teeth.pairs(section, question.every_place)
+        return friction_quantities(lumped_machine, speed, loads, pairs, limits_of(section))
 
     def assemble(values: Values) -> tuple[PairExcitation, Machine]:
         """Build the machine of some config values, and return the excitation by its tooth pair and the

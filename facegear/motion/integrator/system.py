@@ -15,7 +15,8 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.by_content import kept_by_content
 from facegear.harmonics import Harmonics
-from facegear.machine.disturbances import MeshFriction, flank_ratios, friction_rows
+from facegear.machine.disturbances import MeshFriction, friction_rows
+from facegear.machine.flank_errors import flank_lags
 from facegear.machine.flanks import mesh_contacts
 from facegear.machine.machine import Machine, OpenFlanks
 from facegear.meshing.law import MeshLaw
@@ -182,9 +183,9 @@ def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> 
     """Return the friction of all flanks, drive flanks first, in reduced coordinates, without directions
     of zeros.
     """
-    rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
+    rows = np.tile(friction_rows(machine.layout, machine.linear, machine.drive_line), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
-    ratios = flank_ratios(friction.ratios, machine.phases)
+    ratios = friction.flank_ratios(flank_lags(machine, machine.phases))
     return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduction.basis)
 
 

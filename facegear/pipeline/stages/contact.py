@@ -40,8 +40,8 @@ def contact(
     """Solve the loaded tooth contact at every position of a pitch and every torque, on condensed FE
     compliances.
 
-    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks
-    are solved where assembly errors make them differ from it, on the same compliances.
+    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear; `pressure` of teeth
+    other than spur ones has further arrays of the other flanks. These are solved where they differ from it.
 
     Parameters
     ----------
@@ -83,14 +83,14 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; all but `by_flank` and
-        `loads` of the upper gear's drive flank.
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; `ltca` and `by_torque` of
+        the upper gear's drive flank, and `pressure` of spur teeth as well.
     """
     return {
         "ltca": analysis.ltca[0],
         "by_torque": analysis.by_torque[0],
         "by_flank": analysis.by_flank,
-        "pressure": analysis.pressure[0],
+        "pressure": analysis.stored_pressure,
         "loads": analysis.loads,
     }
 

@@ -8,7 +8,7 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves, refusing_names
+from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves
 from facegear.build.load import config_of
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
@@ -20,8 +20,8 @@ from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
-NOT_STAGES = {"displaced_contact", "friction_in_motion"}
-"""Names in SPUR_ONLY of an answer from Python that no stage gives, and of an effect of friction."""
+NOT_STAGES = {"displaced_contact"}
+"""Names in SPUR_ONLY of an answer from Python that no stage gives."""
 
 
 def make_config(name: str, **changes) -> dict:
@@ -159,12 +159,3 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
     for name in ("tolerances_chunk", "compliance", "contact"):
         monkeypatch.setitem(SPUR_ONLY, name, ())
     require_teeth("tolerances_chunk", config.model_dump(mode="json"))
-
-
-def test_friction_that_disturbs_the_motion_is_refused_where_its_loss_alone_is_not():
-    values = facegear.load("config/friction.yaml").config.model_dump(mode="json")
-    values["tooth_pair"]["taper_angle_deg"] = 1.0
-    for effect, refused in (("excitation", True), ("loss_only", False)):
-        values["lubrication"]["friction"]["effect"] = effect
-        names = refusing_names(["lubrication"], values)
-        assert ("taper_angle_deg" in refused_keys(names, values["tooth_pair"])) == refused
