@@ -1,5 +1,7 @@
 """Loads, stiffness and life of rolling bearings by bin of a duty cycle, from the question of a user on."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,10 +9,14 @@ from rolling_bearings import P1
 from ruamel.yaml import YAML
 from three_pinions import STIFFNESS, TEETH, TEXT
 
+import facegear
 from facegear.bearings.life import BASIS, load_rating
 from facegear.build.machine import MachineInputs
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, ConfigErrors
+from facegear.pipeline.needs import require_section
+from facegear.pipeline.stage import Case
 from facegear.pipeline.stages.bearing_life import bearing_life
+from facegear.pipeline.table import STAGES
 from facegear.report.bearings import bearing_life_tables, bearing_tables, largest_change
 from facegear.report.figures.bearings import bearing_figures
 from facegear.schema.base import parse
@@ -162,6 +168,16 @@ def test_the_report_says_how_much_stiffness_changes_and_shows_lives_once(rated):
     assert len(bearing_life_tables(tables)) == 2 and bearing_life_tables({}) == []
 
 
+def test_balls_are_thrown_at_the_speed_of_each_bin():
+    thrown = {**SHAFT, "bearings": [{"at_mm": 10, "rolling": {**BALL, "centrifugal": True}}]}
+    thrown["bearings"].append(SHAFT["bearings"][1])
+    duty = Duty((250.0, 3000.0, 1.0), (250.0, 12000.0, 1.0), (250.0, 1e-3, 1.0))
+    loads = bearing_life(inputs(**thrown), 3000.0, duty).content["loads"]
+    slow, fast, still = (of(loads, "one", "A", label)["outer_pressure_mpa"] for label in "123")
+    plain = of(answers((250.0, 3000.0, 1.0))["loads"], "one", "A", "1")["outer_pressure_mpa"]
+    assert still < slow < fast and still == pytest.approx(plain, rel=1e-6)
+
+
 SMALL = {"card": "deep_groove_6203"}
 OVERLOADS = [
     ({"card": "deep_groove_6203"}, r"bearings\[0\]\.rolling = .* MPa on one at 400 N m.*4200 MPa.*ISO 76"),
@@ -174,6 +190,44 @@ def test_overloaded_bearings_are_refused_with_their_key(rolling, line):
     bearings = [{"at_mm": 10, "rolling": rolling}, SHAFT["bearings"][1]]
     with pytest.raises(ConfigError, match=line):
         bearing_life(inputs(bearings=bearings), 3000.0, None)
+
+
+DUTY = [{"torque_n_m": torque, "speed_rpm": 3000, "hours": 40} for torque in (150, 300)]
+EXAMPLE = Path(__file__).parents[3] / "config" / "bearings.yaml"
+
+
+def test_a_duty_cycle_of_bearings_needs_no_bodies_of_teeth():
+    """The section asked for materials of the teeth, and the pair then for its bodies."""
+    gearbox = facegear.load(EXAMPLE).with_values({"strength": {"bearings": {}, "duty": DUTY}})
+    life = gearbox.bearing_life().content["life"]
+    assert life["bin"].unique().tolist() == ["1", "2", "all"]
+    case = Case(gearbox.values)
+    stages = {name for name, stage in STAGES.items() if stage.condition and stage.condition(case)}
+    assert "bearing_life" in stages and not {"rating", "root_stress", "contact"} & stages
+    with pytest.raises(ConfigError, match=r"strength\.pinion = None: must be given, as rule rating"):
+        require_section("rating", gearbox.values)
+
+
+TEETH_ALONE = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
+INCOMPLETE = [
+    ({"duty": DUTY}, r"strength\.bearings = null: must be given where pinion and face_gear are left out"),
+    ({"duty": DUTY, "bearings": {}, "load_factors": "machine"}, "load_factors = .machine.: must be left out"),
+    ({"duty": DUTY, "bearings": {}, "dynamic_factor": 1.2}, r"dynamic_factor = 1\.2: must be left out"),
+    ({"duty": DUTY, "pinion": TEETH_ALONE}, r"face_gear = null: must be given beside pinion"),
+    ({"bearings": {}}, r"strength\.duty = \[\]: must be at least one bin with hours"),
+]
+
+
+@pytest.mark.parametrize(("section", "line"), INCOMPLETE)
+def test_a_duty_cycle_that_rates_nothing_or_half_is_refused(section, line):
+    with pytest.raises(ConfigErrors, match=line):
+        facegear.load(EXAMPLE).with_values({"strength": section})
+
+
+def test_a_duty_cycle_of_bearings_needs_rolling_bearings():
+    springs = EXAMPLE.with_name("harmonics_only.yaml")
+    with pytest.raises(ConfigErrors, match=r"strength\.pinion = null: must be given, or else transmission"):
+        facegear.load(springs).with_values({"strength": {"bearings": {}, "duty": DUTY}})
 
 
 def test_a_machine_on_springs_has_no_such_answer():
