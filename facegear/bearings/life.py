@@ -360,20 +360,23 @@ def life_together(bearings: Sequence[AnyBearing], lives: Sequence[float]) -> flo
     bearings : sequence of BallBearing or RollerBearing
         The bearings.
     lives : sequence of float
-        Life of each one, any unit; infinite where a bearing carries nothing.
+        Life of each one, any unit; infinite where a bearing carries nothing, not a number where it is not
+        known.
 
     Returns
     -------
     float
-        Unit of the lives: L such that the sum of (L / L_i)^e_i is 1.
+        Unit of the lives: L such that the sum of (L / L_i)^e_i is 1; not a number where one is not known.
     """
     finite = [
         (life, BALL_SERIES if isinstance(bearing, BallBearing) else ROLLER_SERIES)
         for bearing, life in zip(bearings, lives, strict=True)
         if life < np.inf
     ]
+    if np.isnan(lives).any():
+        return float("nan")
     if not finite:
-        return float("nan") if np.isnan(np.sum(lives)) else float("inf")
+        return float("inf")
     shortest = min(life for life, _ in finite)
 
     def excess(logarithm: float) -> float:

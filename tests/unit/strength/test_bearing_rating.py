@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 from three_pinions import STIFFNESS, TEETH, TEXT
 
 import facegear
-from facegear.bearings.life import BASIS, load_rating
+from facegear.bearings.life import BASIS, life_together, load_rating
 from facegear.build.machine import MachineInputs
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.pipeline.needs import require_section
@@ -22,6 +22,7 @@ from facegear.report.figures.bearings import bearing_figures
 from facegear.schema.base import parse
 from facegear.schema.strength import BearingStrength, DutySection
 from facegear.schema.transmission import Transmission
+from facegear.strength.bearing_rating import NO_LIFE_LIMIT, PRESSED_IN
 
 BALL = {"card": "deep_groove_6210", "clearance_diametral_um": 15}
 ROLLER = {"card": "cylindrical_roller_nu210", "clearance_diametral_um": 30}
@@ -120,6 +121,30 @@ def test_a_modified_life_needs_the_fatigue_load_limit_of_the_bearing(rated):
     first, second = of(life, "one", "A", "all"), of(life, "one", "B", "all")
     assert first["modified_hours"] > 0.0 and BASIS["modified"] in first["basis"]
     assert np.isnan(second["modified_hours"]) and BASIS["modified"] not in second["basis"]
+
+
+def test_bearings_without_load_have_no_limit_of_l10_and_say_why():
+    """L10 was 1e48 hours where elements are pressed in: by the 1e-10 N of the shaft that rounding leaves.
+
+    At 200 N m the idlers stay inside the backlash. Their balls are pressed in, and their rollers have play.
+    """
+    clearances = {"transmission.shafts.idler.bearings.0.rolling.clearance_diametral_um": -10}
+    torque = {"transmission.torque.per_input_n_m": 200}
+    content = facegear.load(EXAMPLE).with_values({**clearances, **torque}).bearing_life().content
+    life, loads = content["life"], content["loads"]
+    pressed, loose = (of(life, "right idler", letter, "all") for letter in "AB")
+    assert pressed["l10_hours"] == np.inf and pressed["l10r_hours"] < np.inf
+    assert pressed["remark"] == PRESSED_IN and loose["remark"] == NO_LIFE_LIMIT
+    assert loose["l10_hours"] == loose["l10r_hours"] == np.inf and loose["damage_share"] == 0.0
+    assert of(life, "right input", "A", "all")["remark"] == ""
+    assert of(loads, "right idler", "A", "mean")["radial_n"] == 0.0
+    (shown, _) = bearing_life_tables({"bearings_life": life})
+    assert "remark" in shown.frame.columns and "remark" in shown.main
+
+
+def test_all_bearings_together_have_no_known_life_where_one_has_none():
+    """Bearings of unknown modified life were left out, which made the life of all too long."""
+    assert np.isnan(life_together([P1, P1], [5.0, np.nan]))
 
 
 def test_stiffness_is_given_at_the_mean_load_and_at_both_ends_of_the_cycle(rated):
