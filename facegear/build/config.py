@@ -358,8 +358,9 @@ def resolved_values(config: Config) -> dict[str, Any]:
         Plain nested values under the keys of the config, for stages; the config itself is unchanged.
     """
     values = config.model_dump(mode="json")
-    rates_teeth = config.strength is not None and config.strength.rates_teeth
-    has_given_factors = rates_teeth and config.strength.load_factors == "given"
+    strength = config.strength
+    rates_teeth = strength is not None and strength.rates_teeth
+    has_given_factors = strength is not None and rates_teeth and strength.load_factors == "given"
     if has_given_factors and (machine := config.transmission) is not None:
         for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
             section = values["strength"][body]

@@ -49,22 +49,20 @@ def rolling_bearing(section: RollingSection) -> AnyBearing:
     BallBearing or RollerBearing
         The bearing in SI units, angles in rad; `direction` is -1 where it is loaded along -z, else 1.
     """
-    is_ball = section.type in BALLS
-    cage_places = BALL_PLACES if is_ball else ROLLER_PLACES
     common = {
         "element_diameter": 1e-3 * section.element_diameter_mm,
         "pitch_diameter": 1e-3 * section.pitch_diameter_mm,
         "contact_angle": radians(section.contact_angle_deg or 0.0),
         "clearance": 1e-6 * section.clearance_diametral_um,
         "first_element": radians(section.first_element_deg or 0.0),
-        "cage_places": cage_places if section.is_averaged else 1,
         "speed": (section.speed_rpm or 0.0) * pi / 30.0 if section.centrifugal else 0.0,
     }
     direction = -1 if section.loaded_by == "-z" else 1
-    if is_ball:
+    if section.type in BALLS:
         return BallBearing(
             section.elements,
             direction=direction,
+            cage_places=BALL_PLACES if section.is_averaged else 1,
             groove_ratio_inner=section.groove_ratio_inner or GROOVE_RATIO,
             groove_ratio_outer=section.groove_ratio_outer or GROOVE_RATIO,
             **common,
@@ -73,6 +71,7 @@ def rolling_bearing(section: RollingSection) -> AnyBearing:
     return RollerBearing(
         section.elements,
         direction=direction,
+        cage_places=ROLLER_PLACES if section.is_averaged else 1,
         effective_length=1e-3 * section.effective_length_mm,
         slices=section.slices or SLICES,
         has_profile=section.profile != "straight",

@@ -139,6 +139,8 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 FRICTION = "Friction and heat"
 """Title of the chapter on friction."""
+CASING = "Casing"
+"""Title of the chapter on the casing."""
 SHAFTS = "Shafts"
 """Title of the chapter on shafts."""
 SHARING = "Load sharing"
@@ -214,7 +216,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         ("shafts", "bearings"),
     ),
     (
-        "Casing",
+        CASING,
         "The machine on its casing: forces of the meshes with and without it, modes of both together, and "
         "what its sensors feel, linear about the mean load.",
         ("casing_sharing", "casing_campbell", "casing_acceleration"),
