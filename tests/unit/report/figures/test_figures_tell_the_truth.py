@@ -56,6 +56,20 @@ def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_ve
     assert "(x 6)" in mode_shapes(frequencies, shapes).panels[0].title
 
 
+def test_only_the_lowest_kinds_of_many_modes_are_drawn():
+    """A machine on a casing got 60 panels, 6000 pixels of a page."""
+    frequencies = pd.DataFrame(
+        {
+            "order": range(1, 61),
+            "class": "casing",
+            "symbols": [f"kind {i}" for i in range(60)],
+            "multiplicity": 1,
+        }
+    )
+    modes = typical_modes(frequencies.assign(**{"class": "casing"}))
+    assert modes == [(order,) for order in range(1, 13)]
+
+
 def test_a_contact_curve_ends_where_the_next_pitch_begins():
     rows = pd.DataFrame(1.0, index=range(4), columns=list(LTCA_COLUMNS)).assign(
         position=[0.0, 0.25, 0.5, 0.75], ste_um=[5.0, 6.0, 7.0, 6.0]
