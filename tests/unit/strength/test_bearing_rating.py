@@ -203,11 +203,23 @@ def test_balls_are_thrown_at_the_speed_of_each_bin():
     assert still < slow < fast and still == pytest.approx(plain, rel=1e-6)
 
 
-SMALL = {"card": "deep_groove_6203"}
 OVERLOADS = [
     ({"card": "deep_groove_6203"}, r"bearings\[0\]\.rolling = .* MPa on one at 400 N m.*4200 MPa.*ISO 76"),
     ({**BALL, "shoulder_angle_deg": 0.001}, "must be loaded up to shoulder_angle_deg = 0.001"),
 ]
+ROLLERS = {
+    "type": "cylindrical_roller",
+    "elements": 10,
+    "element_diameter_mm": 3,
+    "pitch_diameter_mm": 30,
+}
+
+
+def test_overloaded_rollers_are_refused_at_their_own_limit():
+    bearings = [SHAFT["bearings"][0], {"at_mm": 120, "rolling": {**ROLLERS, "effective_length_mm": 2}}]
+    line = r"bearings\[1\]\.rolling = .* MPa on one at 400 N m.*4000 MPa.*ISO 76"
+    with pytest.raises(ConfigError, match=line):
+        bearing_life(inputs(bearings=bearings), 3000.0, None)
 
 
 @pytest.mark.parametrize(("rolling", "line"), OVERLOADS)
