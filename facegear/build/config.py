@@ -224,7 +224,7 @@ class Config(Section):
         Torques so small that the mesh cannot resolve their contact are not added.
         """
         torques = self.contact.torques_n_m
-        if self.strength is None or self.tooth_pair.pinion is None:
+        if self.strength is None or not self._rates_teeth or self.tooth_pair.pinion is None:
             return self.contact
         design, plan = pair_design(self.tooth_pair), contact_plan(self.contact)
         spacing = node_spacing(mesh_sizes(self.mesh_used, design.module), plan)
@@ -239,13 +239,24 @@ class Config(Section):
     @property
     def _root_stress(self) -> bool:
         """Whether root stress is asked for, by section contact or by a rating."""
-        return self.contact.root_stress or self.strength is not None
+        return self.contact.root_stress or self._rates_teeth
+
+    @property
+    def _rates_teeth(self) -> bool:
+        """Whether a rating of the teeth is asked for."""
+        return self.strength is not None and self.strength.rates_teeth
 
     def _check_strength(self) -> None:
-        """Refuse material cards with other elasticity than the bodies, and elements that root stress
-        cannot use.
+        """Refuse material cards with other elasticity than the bodies, elements that root stress cannot
+        use, and a duty cycle of nothing.
         """
         if self.strength is None:
+            return
+        if not self.strength.rates_teeth:
+            shafts = self.transmission.shafts.values() if self.transmission else ()
+            if not any(shaft.is_rolling for shaft in shafts):
+                requirement = "given, or else transmission.shafts with rolling bearings"
+                raise ConfigError("strength.pinion", None, requirement)
             return
         for body in ("pinion", "face_gear"):
             card = getattr(self.strength, body).card
@@ -332,9 +343,9 @@ def resolved_values(config: Config) -> dict[str, Any]:
     """Return the plain values of a config with what follows from other keys filled in.
 
     That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken,
-    the backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges
-    need, and how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's
-    once by every pinion.
+    the backlash of the dynamics, the speed at which rolling elements are thrown outwards, the gauges and
+    torques that a rating needs, the fillets that gauges need, and how often a turn loads a tooth: an
+    input pinion's once by every face gear, a face gear's once by every pinion.
 
     Parameters
     ----------
@@ -347,12 +358,14 @@ def resolved_values(config: Config) -> dict[str, Any]:
         Plain nested values under the keys of the config, for stages; the config itself is unchanged.
     """
     values = config.model_dump(mode="json")
-    has_given_factors = config.strength is not None and config.strength.load_factors == "given"
+    strength = config.strength
+    rates_teeth = strength is not None and strength.rates_teeth
+    has_given_factors = strength is not None and rates_teeth and strength.load_factors == "given"
     if has_given_factors and (machine := config.transmission) is not None:
         for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
             section = values["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
-    values["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
+    values["contact"]["root_stress"] = config.contact.root_stress or rates_teeth
     values["contact"]["torques_n_m"] = list(config.contact_used.torques_n_m)
     values["mesh"] = config.mesh_used.model_dump(mode="json")
     stiffness = values["mesh_stiffness"]
@@ -360,7 +373,7 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:
         stiffness["torque_n_m"] = config.contact.torques_n_m[-1]
     if config.transmission is not None:
-        complete = with_backlash(config.tooth_pair, config.transmission)
+        complete = with_backlash(config.tooth_pair, config.transmission.at_speed(config.dynamics.speed_rpm))
         values["transmission"] = complete.model_dump(mode="json")
         if complete.casing is not None:
             values["transmission"]["casing"]["content"] = content(complete.casing)

@@ -166,14 +166,15 @@ def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], l
     """Return failures and remarks about the rating of a pair, as two lists of lines.
 
     A failure is the error by which the rating would end. A remark tells of a notch parameter q_s of the
-    pinion's fillet outside NOTCHES, the range of ISO 6336-3. Both are empty without section `strength`.
+    pinion's fillet outside NOTCHES, the range of ISO 6336-3. Both are empty where teeth are not rated.
     """
-    if values["strength"] is None or refused_keys(["rating"], values["tooth_pair"]):
+    section = values["strength"]
+    if section is None or section["pinion"] is None or refused_keys(["rating"], values["tooth_pair"]):
         return [], []
     ratio = section_contact_ratio(design)
     try:
         form = pinion_form(design, ratio)
-        hertz_stress(design, ratio, rating_request(Strength.of_config(values["strength"]), design))
+        hertz_stress(design, ratio, rating_request(Strength.of_config(section), design))
     except FacegearError as error:
         text = str(error)
         return [text if text.startswith("strength") else f"strength: {text}"], []

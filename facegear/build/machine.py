@@ -323,7 +323,7 @@ class MachineInputs:
             harmonics=harmonics,
         )
 
-    def at_torque(self, torque_n_m: float) -> Self:
+    def at_torque(self, torque_n_m: float, speed_rpm: float | None = None) -> Self:
         """Return the inputs of the machine with all mean torques scaled to another torque of the input
         pinions.
 
@@ -331,13 +331,17 @@ class MachineInputs:
         ----------
         torque_n_m : float
             Torque on an input pinion by each of its meshes, N m.
+        speed_rpm : float or None
+            Speed of the pinions, rpm, for rolling elements that feel centrifugal force; None: that of the
+            inputs.
 
         Returns
         -------
         MachineInputs
             A copy with the torques of `at_mesh_torque`; friction, law and poses stay.
         """
-        return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
+        section = at_mesh_torque(self.transmission, torque_n_m)
+        return replace(self, transmission=section if speed_rpm is None else section.at_speed(speed_rpm))
 
     def build(self) -> Machine:
         """Build the lumped machine from the config, the mesh stiffness and everything else that was

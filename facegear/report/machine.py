@@ -331,8 +331,9 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _materials(values: Mapping[str, Any]) -> str:
-    """State the material cards by which the pair is rated; empty without section `strength`."""
-    if (strength := values["strength"]) is None:
+    """State the material cards by which the pair is rated; empty where teeth are not rated."""
+    strength = values["strength"]
+    if strength is None or strength["pinion"] is None:
         return ""
     pinion, gear = (strength[body]["card"]["name"] for body in ("pinion", "face_gear"))
     return f"Rated as {pinion}. " if pinion == gear else f"Rated as {pinion} (pinion) and {gear} (gear). "

@@ -142,7 +142,9 @@ def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
     rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
     rows = rating[rating["failure"] == failure]
     if rows.empty:
-        return _without_result(values, "strength", RATED_FAILURES[failure])
+        section = values["strength"]
+        rated_teeth = None if section is None else section["pinion"]
+        return _without_result({"strength": rated_teeth}, "strength", RATED_FAILURES[failure])
     row = nearest_rating(rows)
     colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
     same_flank = rows[

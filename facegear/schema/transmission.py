@@ -172,6 +172,22 @@ class Transmission(Section):
         """
         return self.shafts.get(pinion.name) or self.shafts.get(pinion.role)
 
+    def at_speed(self, speed_rpm: float) -> "Transmission":
+        """Return the section with the speed filled in where rolling elements feel centrifugal force.
+
+        Parameters
+        ----------
+        speed_rpm : float
+            Speed of the pinions, rpm.
+
+        Returns
+        -------
+        Transmission
+            The section itself where none do.
+        """
+        shafts = {name: shaft.at_speed(speed_rpm) for name, shaft in self.shafts.items()}
+        return self if shafts == self.shafts else self.model_copy(update={"shafts": shafts})
+
     def _check_names(self) -> None:
         """Refuse settings of single parts that the machine does not have."""
         names = [pinion.name for pinion in self.pinions]

@@ -346,6 +346,7 @@ def judge(
         """
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
+        section = section.at_speed(values["dynamics"]["speed_rpm"])
         parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
         require_buildable(section, mesh.numbers, parts)
         require_room(section, mesh.numbers, parts)

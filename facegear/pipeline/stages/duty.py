@@ -61,7 +61,7 @@ def duty_loads(
     integration = settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, load in enumerate(strength.duty, start=1):
-        machine = inputs.at_torque(load.torque_n_m).build()
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
         history = history_of(machine, load.speed_rpm, integration)
         key = (number, load.torque_n_m, load.speed_rpm)
         loads += [(*key, *row) for row in load_rows(history)]
@@ -127,7 +127,7 @@ def duty_poses(
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
     pose_surface, rows = PoseSurface.of_arrays(surface), []
     for number, load in enumerate(strength.duty, start=1):
-        machine = inputs.at_torque(load.torque_n_m).build()
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
         result = operating_pose(machine, pose_surface)
         for mesh, name in enumerate(machine.layout.mesh_names):
             for back, flank in enumerate(FLANKS):

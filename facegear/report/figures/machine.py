@@ -218,8 +218,14 @@ def _kilo(newtons: float) -> str:
     return format_number(newtons / 1e3)
 
 
+MOST_SHAPES = 12
+"""Kinds of modes that are drawn at most, a free choice: a casing has as many kinds as modes, whose 60 panels
+nobody reads."""
+
+
 def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
-    """Return the orders of the first modes of each kind: one mode, or all modes of one frequency.
+    """Return the orders of the first modes of each kind: one mode, or all modes of one frequency. Of more
+    than MOST_SHAPES kinds the lowest are taken.
 
     A kind is a class with the same symbols; rigid modes are left out. A simple mode is taken if there is one,
     as a single vector out of several modes of one frequency is arbitrary.
@@ -239,7 +245,7 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     for _, rows in elastic.groupby(["class", "symbols"], sort=False):
         first = rows.loc[rows["multiplicity"].idxmin()]
         modes.append(tuple(int(first["order"]) + i for i in range(int(first["multiplicity"]))))
-    return sorted(modes)
+    return sorted(modes)[:MOST_SHAPES]
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:

@@ -8,6 +8,7 @@ from contact_patterns import line_arrays
 from matplotlib.text import Text
 
 from facegear.contact.pattern import LTCA_COLUMNS, SHARES
+from facegear.machine.modes import ModeClass
 from facegear.report.figures.campbell import campbell
 from facegear.report.figures.comparison import curves_compared
 from facegear.report.figures.contact import close_pitch, contact_pattern
@@ -53,6 +54,20 @@ def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_ve
     turned.loc[:47, "amplitude_m_or_rad"] = (angle @ stacked).ravel()
     assert np.allclose(amplitudes(shapes, equal), amplitudes(turned, equal))
     assert "(x 6)" in mode_shapes(frequencies, shapes).panels[0].title
+
+
+def test_only_the_lowest_kinds_of_many_modes_are_drawn():
+    """A machine on a casing got 60 panels, 6000 pixels of a page."""
+    frequencies = pd.DataFrame(
+        {
+            "order": range(1, 61),
+            "class": "casing",
+            "symbols": [f"kind {i}" for i in range(60)],
+            "multiplicity": 1,
+        }
+    )
+    modes = typical_modes(frequencies.assign(**{"class": "casing"}))
+    assert modes == [(order,) for order in range(1, 13)]
 
 
 def test_a_contact_curve_ends_where_the_next_pitch_begins():
@@ -196,11 +211,11 @@ def test_every_pinion_has_a_panel_where_parts_or_torques_differ(singled, torque,
 
 
 def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
-    """The longest label was cut off at the right, and the first column at the left."""
+    """The longest label was cut off at the right, the first column at the left; casings had no colour."""
     frequencies = pd.DataFrame(
         {
-            "frequency_hz": [700.0, 2200.0, 5600.0],
-            "class": ["pinion", "face gear", "pinion coupled face gear"],
+            "frequency_hz": [700.0, 2200.0, 5600.0, 6100.0],
+            "class": [str(kind) for kind in ModeClass if kind is not ModeClass.RIGID],
         }
     )
     marks = pd.DataFrame({"order": [1.0, 0.3], "resonance": [1, 2], "speed_rpm": [2000.0, 9000.0]})
@@ -210,7 +225,7 @@ def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
     figure.canvas.draw()
     (legend,) = figure.legends
     box = legend.get_window_extent()
-    assert len(legend.texts) == 9
+    assert len(legend.texts) == 10
     assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
     plt.close(figure)
 
