@@ -12,8 +12,9 @@ from facegear.build.machine_layout import layout
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
-from facegear.machine.layout import Layout
+from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import Machine
+from facegear.machine.mesh_frames import rim_forces
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
 from facegear.machine.turning_modes import (
@@ -156,11 +157,11 @@ def _parts(
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speeds_rpm[0] / ratio / body_tables.RPM
-    sign = next(member.sign for member in machine.gears if member.side == gear)
+    number = [member.side for member in machine.gears].index(Side(gear))
+    forces = rim_forces(machine.flank_frames[number], machine.gears[number].sign)
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
-    angle = machine.pressure_angle
     return {
-        "bodies": body_tables.body_table(gear, body, patch, angle, machine.angles),
+        "bodies": body_tables.body_table(gear, body, patch, forces, machine.angles),
         "modes": body_tables.mode_table(
             gear, body, speed, tooth_pair.face_gear_teeth, ratio, section.damping
         ),
@@ -168,7 +169,7 @@ def _parts(
             gear, body, tooth_pair.face_gear_teeth, ratio, speeds_rpm[1], machine.angles
         ),
         "compliance": body_tables.compliance_table(gear, body, patch),
-        "influence": body_tables.influence_table(gear, body, patch, angle, sign, angles),
+        "influence": body_tables.influence_table(gear, body, patch, forces, angles),
     }
 
 

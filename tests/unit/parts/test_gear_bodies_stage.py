@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gear_bodies import PATCH, reference_body
+from gear_bodies import PATCH, reference_body, spur_forces
 from references import against, agrees
 
 import facegear
@@ -227,8 +227,7 @@ def test_reduced_bodies_come_back_from_their_arrays(outcome):
     body = ReducedBody.of_arrays(arrays, "upper")
     assert body.arrays("upper") == {key: value for key, value in arrays.items() if key.startswith("upper_")}
     static = outcome.content["bodies"].set_index("gear").loc["upper"]
-    angle = np.radians(25.0)
-    own = body.residual_of_flanks(np.array([[-np.sin(angle), np.cos(angle)]]))[0, 0]
+    own = body.residual_of_flanks(spur_forces())[0, 0]
     left = (1.0 - static["modal_fraction"]) * static["own_compliance_m_per_n"]
     assert own == pytest.approx(left, rel=1e-9)
 
