@@ -32,7 +32,7 @@ SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
     "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
     **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
-    **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
+    "operating_pose": ALL_KINDS,
     **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
 }
 """Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""

@@ -21,7 +21,7 @@ from facegear.machine.mesh_frames import rim_forces
 from facegear.parts.reduced_body import ReducedBody
 
 RANK_TOLERANCE = 1e-10
-"""Part of the largest singular value below which a direction of the flanks is that of others."""
+"""Part of the largest singular value below which a direction of the flanks is that of not_round."""
 
 
 def at_rest(machine: Machine) -> Machine:
@@ -163,8 +163,8 @@ def _shapes(compliances: Array) -> Array:
     """
     sizes, vectors = np.linalg.eigh(compliances)
     shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
-    others = np.delete(np.arange(compliances.shape[1]), ROUND)
-    at = np.ix_([0], others, others)
+    not_round = np.delete(np.arange(compliances.shape[1]), ROUND)
+    at = np.ix_([0], not_round, not_round)
     sizes, vectors = np.linalg.eigh(compliances[at])
     shapes[0] = 0.0
     shapes[at] = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]

@@ -279,8 +279,8 @@ def influence_table(
     """
     static = body.static(patch)
     (drive, back), rows = forces.directions, []
-    mirrored = not forces.turns.any() and np.array_equal(back, drive * np.array([1.0, -1.0, 1.0]))
-    pairs = ((0, 0), (0, 1), (1, 0)) if mirrored else ((0, 0), (0, 1), (1, 0), (1, 1))
+    are_mirror_images = not forces.turns.any() and np.array_equal(back, drive * np.array([1.0, -1.0, 1.0]))
+    pairs = ((0, 0), (0, 1), (1, 0)) if are_mirror_images else ((0, 0), (0, 1), (1, 0), (1, 1))
     for first, second in combinations_with_replacement(meshes, 2):
         for i, j in pairs:
             angle = meshes[first] + forces.turns[i] - meshes[second] - forces.turns[j]

@@ -205,8 +205,8 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
         elasticity[:, :, mesh.in_layer] = orthotropic(moduli, section.material.poisson_ratio, shears)[
             ..., None
         ]
-        height = np.asarray(elements.basis.global_coordinates())[1]
-        density[mesh.in_layer] *= layer.density_at(height[mesh.in_layer])
+        r, height = np.asarray(elements.basis.global_coordinates())[:, mesh.in_layer]
+        density[mesh.in_layer] *= layer.density_at(r, height)
     return elasticity[..., None], density
 
 

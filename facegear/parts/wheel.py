@@ -45,12 +45,21 @@ class Web:
 
 @dataclass(frozen=True)
 class Rim:
-    """Rectangle from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are."""
+    """Rim from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are.
+
+    `front` is the height at the inner radius; it rises by `slope` for each metre outwards.
+    """
 
     inner_radius: float
     outer_radius: float
     back: float
     front: float
+    slope: float = 0.0
+
+    @property
+    def outer_front(self) -> float:
+        """Height of the front at the outer radius, m."""
+        return self.front + self.slope * (self.outer_radius - self.inner_radius)
 
 
 def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
@@ -84,7 +93,7 @@ def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
         (rim.inner_radius, low_out),
         (rim.inner_radius, rim.back),
         (rim.outer_radius, rim.back),
-        (rim.outer_radius, rim.front),
+        (rim.outer_radius, rim.outer_front),
         (rim.inner_radius, rim.front),
         (rim.inner_radius, high_out),
         (hub.outer_radius, high_in),
@@ -137,9 +146,12 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
         limit = f"below `outer radius of the hub`, {1e3 * hub.outer_radius:g} mm"
         raise InvalidInput("bore radius of the hub", 1e3 * hub.bore_radius, limit)
     at_hub, at_rim = web_ends(hub, web, rim)
-    for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
-        if body.back >= body.front:
-            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
+    lowest_fronts = hub.front, min(rim.front, rim.outer_front)
+    for part, body, front, (low, high) in zip(
+        ("hub", "rim"), (hub, rim), lowest_fronts, (at_hub, at_rim), strict=True
+    ):
+        if body.back >= front:
+            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * front:g} mm")
         if low < body.back - COINCIDENCE or high > body.front + COINCIDENCE:
             limit = (
                 f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "

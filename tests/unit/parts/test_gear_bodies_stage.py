@@ -145,8 +145,8 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     bodies = {"lower": common, "upper": fitted}
     said = stage._fitted_layers(bodies, stage._solve_bodies(bodies, FLEXIBLE.tooth_pair))
     assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
-    for section in bodies.values():
-        tooth_contact._solve_body(section, FLEXIBLE.tooth_pair)
+    for gear, section in bodies.items():
+        tooth_contact._solve_body(section, FLEXIBLE.tooth_pair, gear)
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 
