@@ -98,13 +98,15 @@ def test_mass_and_inertias_of_bodies_with_inclined_teeth_are_those_of_their_elem
     assert abs(kinetic[1][0, 1]) == pytest.approx(abs(moment), rel=1e-9)
 
 
-def test_body_whose_rim_is_not_along_inclined_roots_is_refused():
+def test_body_is_refused_unless_its_rim_goes_along_inclined_roots():
     flat = {"corners_mm": [[130, -12], [280, -12], [280, 12], [130, 12]]}
     values = {"case": "flat", "tooth_pair": public_section("P2"), "transmission": machine(flat)}
     with pytest.raises(
         ConfigErrors, match=r"an edge from radius 253 and height 13\.6083167 mm to 276 and 12 mm"
     ):
         parse(Config, values)
+    inclined = {"corners_mm": [[130, -12], [276, -12], [276, 12], [253, 13.6083167], [130, 13.6083167]]}
+    parse(Config, values | {"transmission": machine(inclined)})
 
 
 @pytest.mark.parametrize("name", NAMES)
