@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.reduced_body import ReducedBody, RimForces
 
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 """J, which turns the cosine and sine coordinates of a wave by a quarter of a period."""
@@ -36,7 +36,7 @@ class Coordinates:
     slopes : (2, meshes of the gear, k)
         Slopes of the rim below each mesh by the coordinates, as `LinearModel.slopes`.
     lengths : (k,)
-        Motion of the pitch point by a unit of each, m.
+        Motion of the pitch point by a unit of each, in the directions in which flanks press, m.
     """
 
     letters: tuple[str, ...]
@@ -52,7 +52,7 @@ class Coordinates:
     lengths: Array
 
 
-def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
+def coordinates(body: ReducedBody, sign: float, angles: Array, forces: RimForces) -> Coordinates:
     """Return the elastic coordinates of a gear with meshes at given angles, from its modes.
 
     Matrices of rotation are those for a speed of the body of 1 rad/s, in the frame that stands still in
@@ -66,8 +66,8 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         1 for the upper, -1 for the lower gear, dimensionless.
     angles : (n,) array
         Angles of the meshes, rad.
-    pressure_angle : float
-        Pressure angle, rad.
+    forces : RimForces
+        Unit forces of the flanks of a mesh on the gear's rim.
 
     Returns
     -------
@@ -81,7 +81,8 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
     shift = np.diag(body.order.astype(float)) + body.coriolis
     n = body.order[:, None].astype(float)
     slowed = body.stiffening - np.diag(body.order.astype(float) ** 2) - 2.0 * n * body.coriolis
-    axial, around = body.mesh[:, mode]
+    axial, around, radial = body.mesh[:, mode]
+    lengths = np.hypot(np.hypot(axial, around), radial * forces.directions[:, 2].any())
     stiffness = (2.0 * np.pi * body.frequency[mode]) ** 2
     coriolis = 2.0 * pair * np.where(order[:, None] > 0, shift[np.ix_(mode, mode)], 0.0)
     coriolis += _order_zero(body, mode)
@@ -95,9 +96,9 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         circulatory=circulatory,
         centrifugal=is_same_part * slowed[np.ix_(mode, mode)],
         gyroscopic_hub=_hub_coriolis(body, mode, cosine, sign),
-        rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
+        rows=flank_rows(order, part, body.mesh[:, mode], body.round[mode], forces, angles),
         slopes=rim_slopes(order, part, axial, body.slopes[mode], body.round[mode], angles),
-        lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
+        lengths=np.maximum(lengths, 1e-9 * lengths.max(initial=1.0)),
     )
 
 
@@ -166,19 +167,11 @@ def _hub_coriolis(body: ReducedBody, mode: Integers, cosine: Mask, sign: float) 
 
 
 def flank_rows(
-    order: Integers,
-    part: Integers,
-    axial: Array,
-    around: Array,
-    turning: Array,
-    sign: float,
-    angles: Array,
-    pressure_angle: float,
+    order: Integers, part: Integers, motions: Array, turning: Array, forces: RimForces, angles: Array
 ) -> Array:
     """Return the derivatives of the deflections of the flanks, as `Coordinates.rows`.
 
-    The deflection d loses the motion of the pitch point along the force on the gear, -sin a axially and +-cos
-    a round it.
+    A deflection loses the motion of the pitch point along the force on the gear.
 
     Parameters
     ----------
@@ -186,35 +179,34 @@ def flank_rows(
         Number of waves round the gear of each coordinate, dimensionless.
     part : (k,) array of int
         0 for the cosine, 1 for the sine, dimensionless.
-    axial : (k,) array
-        Axial motion of the pitch point by a unit of each coordinate, m.
-    around : (k,) array
-        Its motion round the axis, m.
+    motions : (3, k) array
+        Motion of the pitch point along the axis, round it and along the radius by a unit of each coordinate,
+        m.
     turning : (k,) array
         1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
-    sign : float
-        1 for the upper, -1 for the lower gear, dimensionless.
+    forces : RimForces
+        Unit forces of the flanks of a mesh.
     angles : (n,) array
         Angles of the meshes, rad.
-    pressure_angle : float
-        Pressure angle, rad.
 
     Returns
     -------
     (2 n, k) array
         m for a unit of each coordinate, drive flanks first.
     """
-    phase = order * angles[:, None]
-    cos, sin = np.cos(phase), np.sin(phase)
-    along = around * np.where(part == 0, sin, -cos)
-    along = np.where((order == 0), around * turning, along)
-    up = lifts(order, part, axial, turning, angles)
-    separating_motion, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
-    return np.concatenate([separating_motion - tangential, separating_motion + tangential])
+    rows = []
+    for (axial, tangential, radial), turn in zip(forces.directions, forces.turns, strict=True):
+        at = angles + turn
+        phase = order * at[:, None]
+        along = motions[1] * np.where(part == 0, np.sin(phase), -np.cos(phase))
+        along = np.where(order == 0, motions[1] * turning, along)
+        up, out = (lifts(order, part, motion, turning, at) for motion in (motions[0], motions[2]))
+        rows.append(-(axial * up + tangential * along + radial * out))
+    return np.concatenate(rows)
 
 
 def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles: Array) -> Array:
-    """Return the axial motion of the rim at some angles for a unit of each coordinate.
+    """Return the axial or radial motion of the rim at some angles for a unit of each coordinate.
 
     Order n has axial * cos(n angle) or axial * sin(n angle); order 0 has `axial`, or 0 where it goes
     round the axis.

@@ -12,11 +12,12 @@ At a mesh a gear has the tangent, its axis from the lower to the upper gear, and
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, pi
+from math import atan2, cos, pi, sin
 
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.parts.reduced_body import RimForces
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.tooth_family import SIDES, Rack, RelativeMotion, ToothFamily
 
@@ -75,6 +76,38 @@ class FlankFrame:
             outwards * n_across - across * n_outwards,
             across * n_height - height * n_across,
         )
+
+
+def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float) -> RimForces:
+    """Return unit forces of the flanks of a mesh on the rim of the gear, where their lines of contact cross
+    the pitch plane.
+
+    A force has the same moments from every point of its line.
+
+    Parameters
+    ----------
+    frames : pair of FlankFrame
+        Lines of contact of drive and back flank.
+    sign : float
+        1 for the upper, -1 for the lower gear, dimensionless.
+
+    Returns
+    -------
+    RimForces
+        Heights count towards the teeth, against the axis of the upper gear.
+    """
+    directions, turns = np.zeros((len(frames), 3)), np.zeros(len(frames))
+    for flank, frame in enumerate(frames):
+        (n_across, n_height, n_outwards), (across, height, outwards) = frame.gear_normal, frame.gear_point
+        way = -height / n_height
+        turn = atan2(across + way * n_across, outwards + way * n_outwards)
+        directions[flank] = (
+            -sign * n_height,
+            cos(turn) * n_across - sin(turn) * n_outwards,
+            sin(turn) * n_across + cos(turn) * n_outwards,
+        )
+        turns[flank] = turn
+    return RimForces(directions, turns)
 
 
 @dataclass(frozen=True)
