@@ -28,8 +28,7 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
-    **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
-    **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
+    "posed_stress": ALL_KINDS,
     "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
     **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
     **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
