@@ -257,6 +257,8 @@ def test_the_figures_of_life_and_damage_show_every_method():
     shown = life(table, harm, curve_table(found))
     names = {key.name for key in entries(shown.panels)}
     assert {name.rsplit(", ", 1)[1] for name in names} == {one.method for one in found}
+    engines = (rows.assign(body="engine A") for rows in (table, harm, curve_table(found)))
+    assert all(key.name.startswith("Engine A, ") for key in entries(life(*engines).panels))
     (panel,) = damage_by_bin(table, harm).panels
     assert len(entries([panel])) + panel.title.count("flank") == len(found)
 
