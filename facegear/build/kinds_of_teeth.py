@@ -28,9 +28,7 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
-    **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
-    **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
-    "operating_pose": ALL_KINDS,
+    **dict.fromkeys(("posed_stress", "operating_pose"), ALL_KINDS),
     **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
 }
 """Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""

@@ -20,7 +20,7 @@ from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
-from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases, place_lags
 from facegear.machine.rolling_seats import rolling_seat
 from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
@@ -133,7 +133,7 @@ def error_lags(section: Transmission, shape: Layout) -> Array | None:
     Returns
     -------
     (meshes,) array or None
-        Lags in mesh periods; None where e(t) lags as the stiffness does, `stiffness_phases`.
+        Lags in mesh periods; None where e(t) lags as the stiffness does, `stiffness_lags`.
     """
     phasing = section.transmission_error.phasing
     if phasing == "mesh":
@@ -292,10 +292,11 @@ def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
     )
 
 
-def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
-    """Return by how much the stiffness of each mesh lags behind that of the reference mesh.
+def stiffness_lags(section: Transmission, teeth: ToothNumbers) -> Array:
+    """Return by how much the stiffness of each flank lags behind that of the reference mesh.
 
-    The lag follows from tooth numbers, angles and clocking of the pinions, and the phase convention.
+    The lag follows from tooth numbers, angles, clocking and axial places of the pinions, and the phase
+    convention.
 
     Parameters
     ----------
@@ -306,13 +307,14 @@ def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
 
     Returns
     -------
-    (meshes,) array
-        Lags in mesh periods, 0 to 1; that of mesh 0, first pinion and first gear, is 0 unless it is the
-        lower of two gears.
+    (2 meshes,) array
+        Lags in mesh periods, drive flanks first; 0 for the first pinion and gear in its place, unless that
+        gear is the lower of two.
     """
     shape = layout(section, teeth)
-    clocking = imperfections(section, shape).clocking
-    return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
+    flaws = imperfections(section, shape)
+    phases = mesh_phases(shape, PhaseConvention(section.phase_convention), flaws.clocking)
+    return np.tile(phases, 2) + place_lags(shape, flaws.outwards)
 
 
 def external_forces(section: Transmission, shape: Layout) -> Array:

@@ -8,6 +8,7 @@ from facegear.schema.base import parse
 from facegear.schema.cards import Card, Limits
 from facegear.schema.strength import Strength
 from facegear.schema.yaml_file import read_yaml
+from facegear.strength.flank_contacts import normal_arms
 from facegear.strength.materials import (
     BendingLimits,
     DutyBin,
@@ -151,7 +152,8 @@ def rating_request(
             for (gear, body), turns in zip(sections.items(), (1.0, ratio), strict=True)
         )
     else:
-        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.normal_arm)
+        arms = {flank: section.factor * arm for flank, arm in normal_arms(design).items()}
+        flanks = machine_duty(spectrum, duty, ratio, arms)
     return RatingRequest(
         bodies={
             gear: RatedBody(limits_of(body.card), 1e-6 * body.root_roughness_um)

@@ -286,14 +286,14 @@ def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) 
     return load_dependent_law(shift_tables(drive, lags))
 
 
-def flank_places(phases: Array, cycles: Array) -> Array:
-    """Return the position of every flank in the reference's mesh cycle: cycles - phase, its negative for
-    a back flank, which goes through the reference's cycle the other way round.
+def flank_places(lags: Array, cycles: Array) -> Array:
+    """Return the position of every flank in the reference's mesh cycle: cycles - lag, its negative for a back
+    flank, which goes through the reference's cycle the other way round.
 
     Parameters
     ----------
-    phases : (meshes,) array
-        Lag of each mesh, mesh periods.
+    lags : (2 meshes,) array
+        Lag of each flank as `flank_lags` returns it, mesh periods, drive flanks first.
     cycles : (K,) array
         Mesh cycles from the start, periods.
 
@@ -302,5 +302,6 @@ def flank_places(phases: Array, cycles: Array) -> Array:
     (K, 2 meshes) array
         Mesh periods in [0, 1), drive flanks first.
     """
-    drive = cycles[:, None] - phases
-    return np.mod(np.concatenate([drive, -drive], axis=1), 1.0)
+    positions = cycles[:, None] - lags
+    positions[:, lags.size // 2 :] *= -1.0
+    return np.mod(positions, 1.0)

@@ -34,7 +34,7 @@ REPORT_TABLES = {
     "sharing_map": ["curves", "inputs", "points", "advice", "reasons"],
     "following": ["groups"],
     "contact": ["ltca", "by_torque"],
-    "root_stress": ["summary"],
+    "root_stress": ["summary", "by_flank"],
     "contact_studies": ["table"],
     "tolerances": ["percentiles", "fractions", "sampling"],
     "lubrication": ["by_torque", "limits"],

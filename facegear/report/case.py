@@ -20,7 +20,6 @@ from facegear.report.chapter_tables import (
     FOLLOWING_SHOWN,
     LONG_TABLE,
     MODE_CONTACTS,
-    ROOT_STRESS,
     SHAFT_TABLES,
     STUDY_COLUMNS,
     bearing_reactions,
@@ -29,6 +28,7 @@ from facegear.report.chapter_tables import (
     friction_tables,
     jump_tables,
     rating_and_safety_tables,
+    root_stress_tables,
     scorecard_chapter,
     stress_over_speed_tables,
 )
@@ -228,7 +228,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], main=BY_TORQUE_SHOWN)]
     if title == "Root stress" and "root_stress" in tables:
-        return [Table(ROOT_STRESS, tables["root_stress"])]
+        return root_stress_tables(tables)
     if title == FRICTION and "friction" in tables:
         return friction_tables(tables)
     if title == STUDIED_CONTACT and "studies" in tables:
@@ -242,7 +242,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             else []
         )
         running_tables += stress_over_speed_tables(tables, speed_rpm)
-        return [*report_tables, *running_tables, Table(ROOT_STRESS, tables["root_stress"])]
+        return [*report_tables, *running_tables, *root_stress_tables(tables)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4])]
     if title == "Modes" and "frequencies" in tables:

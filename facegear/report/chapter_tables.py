@@ -33,6 +33,8 @@ ROOT_STRESS = (
     "tooth's middle line"
 )
 """Caption of the table of root stress."""
+EVERY_FLANK = "Root stress of every flank that differs: drive and coast flanks of each gear"
+"""Caption of the table of root stress by flank."""
 SHAFT_TABLES = {
     "shafts_seats": "Stiffness of what each pinion sits on, without moments, and where it stands under the "
     "mean torques",
@@ -57,7 +59,8 @@ SAFETY = (
     "what tip "
     "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
     "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
-    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given. caveat: "
+    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given; "
+    "undecided: no method could rate it. caveat: "
     "what the method does not know; it never changes the colour"
 )
 """Caption of the table of safety."""
@@ -156,6 +159,28 @@ LOSSES = (
     "together, over the power in"
 )
 """Caption of the table of losses."""
+
+
+def root_stress_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of root stress: of the upper gear's drive flank, and of all flanks where they differ.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the case by name: `root_stress`, and `root_stress_by_flank` if it is there.
+
+    Returns
+    -------
+    list of Table
+        One table, or two where teeth or errors of assembly make flanks differ; the second one is folded.
+    """
+    report_tables = [Table(ROOT_STRESS, tables["root_stress"])]
+    by_flank = tables.get("root_stress_by_flank", pd.DataFrame())
+    columns = [name for name in by_flank if name not in ("gear", "flank")]
+    different = by_flank.drop_duplicates(columns)
+    if len(different) > len(tables["root_stress"]):
+        report_tables.append(Table(EVERY_FLANK, different, is_folded=True))
+    return report_tables
 
 
 def rating_and_safety_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
