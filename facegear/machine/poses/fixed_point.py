@@ -417,7 +417,7 @@ def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
         errors = result.poses.errors(mesh, back)
         if not design.is_spur:
             errors = replace(errors, pinion_axial=float(result.poses.outward[mesh]))
-        pair = replace(pair_at(design, gear, FLANKS[back]), assembly=errors)
+        pair = replace(pair_at(design, gear, FLANKS[int(back)]), assembly=errors)
         parts = (errors.offset, errors.shaft_angle_error, errors.gear_axial, errors.pinion_axial)
         teeth = pair.shaft_angle, pair.offset
         key = (back, *teeth, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")

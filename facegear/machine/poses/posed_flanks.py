@@ -377,7 +377,7 @@ def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: boo
         m and rad.
     """
     gear = machine.layout.gears[machine.layout.meshes[mesh][1]].side.value
-    return errors_at(surface.nominal, gear, FLANKS[back])
+    return errors_at(surface.nominal, gear, FLANKS[int(back)])
 
 
 def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
@@ -400,7 +400,7 @@ def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: boo
         m and rad.
     """
     errors = assembly_errors(machine, surface, mesh, back)
-    flank = mesh + len(machine.layout.meshes) * back
+    flank = mesh + len(machine.layout.meshes) * int(back)
     contact = contact_at(flank_surfaces(machine, surface)[flank].pair, errors)
     assert contact is not None
     return contact.path, errors.shaft_angle_error
