@@ -19,7 +19,6 @@ from facegear.harmonics import Harmonics, stacked_values
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel
-from facegear.machine.mesh_frames import ToothKind
 
 WHOLE = 1e-9
 """Distance of a frequency over that of the mesh from a whole number that counts as rounding."""
@@ -223,6 +222,56 @@ class MeshFriction:
         return np.maximum(forces, 0.0) * drive + np.maximum(-forces, 0.0) * back
 
 
+@dataclass(frozen=True, eq=False)
+class FrictionWrench:
+    """Force and moment on a pinion for one of a part of friction; the gear feels the opposite.
+
+    Vectors (3,) are along tangent, gear axis (from the lower to the upper gear) and outwards.
+
+    Attributes
+    ----------
+    part : int
+        Number of the part.
+    point
+        Where the force acts, from the gear's axis and over the pitch plane, m.
+    force, moment
+        Dimensionless, and m about the point.
+    """
+
+    part: int
+    point: Array
+    force: Array
+    moment: Array
+
+    def gear_tilts(self, angle: float, height: float) -> Array:
+        """Return the moments on the gear about a point of its axis.
+
+        Parameters
+        ----------
+        angle : float
+            Distribution angle of the pinion, rad.
+        height : float
+            Height of the point over the pitch plane, along the gear axis, m.
+
+        Returns
+        -------
+        (2,) array
+            About the gear's x and y, m.
+        """
+        about = self.moment + np.cross(self.point - [0.0, height, 0.0], self.force)
+        return np.asarray(-(about[0] * _along(angle) + about[2] * _away(angle)))
+
+
+def _along(angle: float) -> Array:
+    """Return the direction (2,) of the tangent in the gears' frame at a distribution angle (rad)."""
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _away(angle: float) -> Array:
+    """Return the direction (2,) outwards in the gears' frame at a distribution angle (rad)."""
+    return np.array([np.sin(angle), -np.cos(angle)])
+
+
 def friction_rows(
     layout: Layout, linear: LinearModel, line: DriveLine | None, at_output: bool = True
 ) -> Array:
@@ -248,62 +297,56 @@ def friction_rows(
     (meshes, parts, n) array
         Force on each coordinate for 1 N of each part, N/N, and m for moments; parts as `parts_of`.
     """
-    rows = np.zeros((len(layout.meshes), len(parts_of(layout)), layout.dof))
+    rows = np.zeros((len(layout.meshes), len(parts_of(layout)), linear.size))
+    # Bodies that tilt with the seats of their casing alone.
+    seat_tilts = None if linear.seat_tilts is None else linear.over_all(linear.seat_tilts)
     output = DOF_PER_BODY * (len(layout.pinions) + layout.output) + 3
-    for row, mesh in zip(rows, layout.meshes, strict=True):
-        if layout.kind is None:
-            _add_spur_forces(row, layout, mesh)
-        else:
-            _add_wrenches(row, layout, layout.kind, mesh)
-        pinion, gear = DOF_PER_BODY * mesh[0], DOF_PER_BODY * (len(layout.pinions) + mesh[1])
-        row[3, pinion + 3], row[4, gear + 3] = layout.pinion_arm, layout.gear_arm
+    for row, (pinion, g) in zip(rows, layout.meshes, strict=True):
+        gear, side, angle = len(layout.pinions) + g, layout.gears[g].sign, float(layout.angles[pinion])
+        has_axial_bearing = layout.kind is not None or layout.pinions[pinion].body.bearing[2] > 0.0
+        lean = np.eye(3) if layout.kind is None else layout.kind.lean
+        for wrench in _wrenches(layout, side):
+            part = row[wrench.part]
+            across, height, outwards = wrench.force
+            part[DOF_PER_BODY * pinion : DOF_PER_BODY * pinion + 3] = lean @ wrench.force
+            part[DOF_PER_BODY * pinion + 2] *= float(has_axial_bearing)
+            part[DOF_PER_BODY * gear : DOF_PER_BODY * gear + 2] = -(
+                across * _along(angle) + outwards * _away(angle)
+            )
+            part[DOF_PER_BODY * gear + 2] = -height
+            if g in layout.first_tilts:
+                tilt = layout.gears[g].body.tilt
+                below = 0.0 if tilt is None else side * tilt.below
+                part[layout.first_tilts[g] + np.arange(2)] = wrench.gear_tilts(angle, below)
+            if layout.kind is not None and line is not None and pinion in line.tilting:
+                part[line.tilts(pinion)] = (lean @ wrench.moment)[:2]
+            if seat_tilts is not None:
+                part += wrench.gear_tilts(angle, 0.0) @ seat_tilts[gear]
+                part += (lean @ wrench.moment)[:2] @ seat_tilts[pinion]
+        row[3, DOF_PER_BODY * pinion + 3] = layout.pinion_arm
+        row[4, DOF_PER_BODY * gear + 3] = layout.gear_arm
         if at_output:
             row[3:5, output] -= layout.gear_arm
-    whole = linear.over_all(rows)
-    if layout.kind is not None and line is not None:
-        for row, (pinion, gear) in zip(whole, layout.meshes, strict=True):
-            if pinion in line.tilting:
-                row[[5, 6], line.tilts(pinion)] = layout.gears[gear].sign * layout.pinion_arm
-    return whole
+    return rows
 
 
-def _add_spur_forces(row: Array, layout: Layout, mesh: tuple[int, int]) -> None:
-    """Add the forces of friction of spur teeth to the rows (parts, dof) of a mesh, in place.
+def _wrenches(layout: Layout, side: float) -> list[FrictionWrench]:
+    """Return the wrenches of the parts of friction at the meshes of a gear, without moments about the axes of
+    both bodies, which `friction_rows` adds.
 
-    They act at the pitch point. mesh: numbers of pinion and gear.
+    Forces of spur teeth act at the pitch point. Other forces along the axes of pinion and gear are
+    projections of one force. Each therefore acts along the direction square to the other axis. side: 1 for
+    the upper, -1 for the lower gear.
     """
-    i, g = mesh
-    side = layout.gears[g].sign
-    cosine, sine = np.cos(layout.angles[i]), np.sin(layout.angles[i])
-    pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-    row[0, pinion], row[0, gear : gear + 2] = side, [-side * cosine, -side * sine]
-    has_axial_bearing = layout.pinions[i].body.bearing[2] > 0.0
-    row[1, pinion + 2], row[1, gear : gear + 2] = float(has_axial_bearing), [-sine, cosine]
-    row[2, pinion + 1], row[2, gear + 2] = side, -side
-    if g in layout.first_tilts:
-        tilts = layout.first_tilts[g]
-        row[2, tilts : tilts + 2] = side * layout.mesh_radius * np.array([cosine, sine])
-
-
-def _add_wrenches(row: Array, layout: Layout, kind: ToothKind, mesh: tuple[int, int]) -> None:
-    """Add forces at the middle of the pinion's face, and moments that tilt the gear, to the rows (parts, dof)
-    of a mesh, in place; moments about the axes of the bodies are added elsewhere.
-
-    The parts along the axes of pinion and gear are projections of one force. Each therefore acts along the
-    direction square to the other axis. mesh: numbers of pinion and gear.
-    """
-    i, g = mesh
-    side, lean = layout.gears[g].sign, kind.lean
-    along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
-    away = np.array([along[1], -along[0]])
-    pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-    tilt = layout.gears[g].body.tilt
-    centre = np.array(kind.face_middle(side)) - [0.0, 0.0 if tilt is None else side * tilt.below, 0.0]
-    (_, across, axis), arm = lean, layout.pinion_arm
+    zero, kind = np.zeros(3), layout.kind
+    if kind is None:
+        point = np.array([0.0, 0.0, layout.mesh_radius])
+        forces = np.diag([side, side, 1.0])[[0, 2, 1]]
+        return [FrictionWrench(part, point, force, zero) for part, force in enumerate(forces)]
+    point, arm = np.array(kind.face_middle(side)), layout.pinion_arm
+    across, axis = kind.lean[1:]
     cosine, sine = axis[1:]
-    # Force and moment on the pinion along tangent, gear axis and outwards, for one of each part.
-    zero = np.zeros(3)
-    wrenches = {
+    forces_and_moments = {
         0: (np.array([side, 0.0, 0.0]), zero),
         1: (np.array([0.0, 0.0, 1.0 / sine]), zero),
         2: (np.array([0.0, side, -side * cosine / sine]), zero),
@@ -311,10 +354,4 @@ def _add_wrenches(row: Array, layout: Layout, kind: ToothKind, mesh: tuple[int, 
         5: (zero, np.array([side * arm, 0.0, 0.0])),
         6: (zero, side * arm * across),
     }
-    for part, (force, moment) in wrenches.items():
-        row[part, pinion : pinion + 3] = lean @ force
-        row[part, gear : gear + 2] = -(force[0] * along + force[2] * away)
-        row[part, gear + 2] = -force[1]
-        if g in layout.first_tilts:
-            tilts, about = layout.first_tilts[g], moment + np.cross(centre, force)
-            row[part, tilts : tilts + 2] = -(about[0] * along + about[2] * away)
+    return [FrictionWrench(part, point, *known) for part, known in forces_and_moments.items()]

@@ -5,16 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from floating_machines import KINDS, MESH_DAMPING, ByHand, machine_of
+from public_casing import mount_public
 from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 from scipy_motions import kicked
-from wrench_machines import coordinates, mirrored, place
+from seated_machines import make_small_layout, make_small_machine, place_on
+from wrench_machines import coordinates, make_layout, mirrored, place, random_teeth
 
 from facegear.harmonics import stacked_values
 from facegear.machine.disturbances import MeshFriction, friction_rows
 from facegear.machine.flank_errors import flank_lags
-from facegear.machine.layout import Side
+from facegear.machine.layout import Side, Tilt
 from facegear.motion.integrator.kernel_system import TAU
 from facegear.motion.plan import Settings
 from facegear.motion.steady_state.simulate import build_model
@@ -255,3 +257,37 @@ def test_power_in_less_power_out_less_friction_less_damping_changes_the_energy(n
     assert abs(sums["friction"]) > 1e-2 * abs(ends[1] - ends[0]) and sums["even"] > 0.0
     scale = abs(sums["friction"]) + abs(sums["damping"])
     agrees("work left over, J", left, 0.0, absolute=1e-8 * scale)
+
+
+def parts_of_normals(layout, kind_of_parts):
+    """Return the parts of friction that make up the force of the flanks' normals on the pinions."""
+    parts = np.zeros((2, len(layout.meshes), kind_of_parts))
+    for mesh, (_, g) in enumerate(layout.meshes):
+        side = layout.gears[g].sign
+        for flank, frame in enumerate(layout.flank_frames[g]):
+            tangent, axis = side * frame.gear_normal[0], side * frame.gear_normal[1]
+            tilts = side * np.array(frame.moment[:2]) / layout.pinion_arm
+            whole = [-tangent, -frame.normal[2], -axis, -frame.arm, frame.arm, *-tilts]
+            parts[flank, mesh] = whole[:kind_of_parts]
+    return parts.reshape(-1, kind_of_parts)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("spur", [False, True])
+@pytest.mark.parametrize("tilts", [False, True])
+def test_friction_along_the_normal_acts_as_the_flank_does_on_bodies_and_casing(seed, spur, tilts):
+    """Spur gears that tilt with a seat, or about a point below the pitch plane, lost parts of the moment."""
+    rng = np.random.default_rng([61, seed])
+    layout = make_small_layout()
+    gears = layout.gears
+    if tilts:
+        gears = tuple(replace(g, body=replace(g.body, tilt=Tilt(0.3, 1e7, 0.01))) for g in gears)
+    if spur:
+        layout = replace(layout, gears=gears)
+    else:
+        layout = make_layout(replace(random_teeth(rng), pinion=20, gear=60), layout.pinions, gears)
+    machine = make_small_machine(layout, place_on(mount_public(modes=0), layout))
+    rows = np.tile(friction_rows(layout, machine.linear, machine.drive_line, at_output=False), (2, 1, 1))
+    acting = np.einsum("fp,fpn->fn", parts_of_normals(layout, rows.shape[1]), rows)
+    expected = -machine.linear.rows
+    np.testing.assert_allclose(acting, expected, atol=1e-13 * np.abs(expected).max())

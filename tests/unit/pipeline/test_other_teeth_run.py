@@ -18,6 +18,7 @@ from facegear.schema.base import parse
 from facegear.schema.lubrication import LubricationSection
 from facegear.schema.strength import Strength
 from facegear.strength.columns import DUTY_SPECTRUM_COLUMNS
+from facegear.studies.lubricated_teeth import reduction_over
 
 COARSE = {
     "mesh": {"resolution": {"profile_mm": 1.4, "width_mm": 6, "thickness_mm": 4}},
@@ -317,3 +318,19 @@ def test_slow_motion_with_friction_loses_what_the_machine_at_rest_does(gearbox_o
         for one in (gearbox, gearbox_of(name).with_values({"dynamics.speed_rpm": 200}))
     )
     assert np.abs(rubbed - without).max() > 1e-4 * np.abs(without).max()
+
+
+def test_few_places_of_both_flanks_lose_as_all_places_do(gearbox_of):
+    """Samples of tolerances take friction from few places, of the contact of each loaded flank."""
+    contact, values = gearbox_of("P1").contact().content, gearbox_of("P1").values["tooth_pair"]
+    section = parse(LubricationSection, LUBRICATED["lubrication"])
+    reduce_teeth = reduction_over([(section, speed) for speed in (5000.0, 6000.0, 7000.0)])
+    teeth = reduce_teeth(contact["ltca"], contact["pressure"], parse(ToothPair, values))
+    both = np.array([0, 0]), np.array([0, 1])
+    bulk = np.array([[115.0, 108.0], [112.0, 110.0]])
+    few, every = (
+        teeth.pairs(section, every_place).of_meshes(*both).losses(6000 * pi / 30, bulk)
+        for every_place in (False, True)
+    )
+    np.testing.assert_allclose(few.loss_fraction, every.loss_fraction, rtol=1e-6)
+    assert not np.allclose(few.loss_fraction[0], few.loss_fraction[1], rtol=0.01)
