@@ -201,7 +201,7 @@ def test_gaps_move_in_proportion_to_a_small_departure_from_spur(key):
 
 
 def test_rays_of_a_pinion_that_stands_inwards_past_undercut_miss_the_gear_or_meet_it():
-    """Newton's method found no foot of rays that leave the flank over its lower edge near the singular line."""
+    """Newton's method found no foot of rays that leave the flank over its lower edge, near undercut."""
     public, inner = pair_of(public_design("P1")), 215e-3
     design = replace(
         public,
