@@ -14,6 +14,7 @@ from facegear.report.figures.comparison import curves_compared
 from facegear.report.figures.contact import close_pitch, contact_pattern
 from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
+from facegear.report.figures.marks import Bars
 from facegear.report.figures.motion import deflections, drawn_machine
 from facegear.report.figures.sharing import bearing_figure, sharing_figure
 from facegear.report.figures.teeth import separation
@@ -54,6 +55,26 @@ def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_ve
     turned.loc[:47, "amplitude_m_or_rad"] = (angle @ stacked).ravel()
     assert np.allclose(amplitudes(shapes, equal), amplitudes(turned, equal))
     assert "(x 6)" in mode_shapes(frequencies, shapes).panels[0].title
+
+
+def test_tilts_are_drawn_beside_the_other_motions_of_their_body():
+    """They stood behind all bodies, without a name."""
+    names = [(body, dof) for body in ("pinion", "gear") for dof in ("x", "y", "z", "theta")]
+    names += [("pinion", "tilt_x"), ("pinion", "tilt_y")]
+    rows = [(1, body, dof, 0.1 * number) for number, (body, dof) in enumerate(names, start=1)]
+    shapes = pd.DataFrame(rows, columns=["order", "body", "dof", "amplitude_m_or_rad"])
+    columns = {
+        "order": [1],
+        "frequency_hz": [9.0],
+        "class": ["pinion"],
+        "symbols": ["T"],
+        "multiplicity": [1],
+    }
+    (panel,) = mode_shapes(pd.DataFrame(columns).assign(**{"class": "pinion"}), shapes).panels
+    assert panel.x.ticks == [(2.5, "pinion"), (7.5, "gear")]
+    (bars,) = (mark for mark in panel.marks if isinstance(mark, Bars))
+    assert np.allclose(10.0 * bars.lengths, [1, 2, 3, 4, 9, 10, 5, 6, 7, 8])
+    assert "further motions" in panel.x.name
 
 
 def test_only_the_lowest_kinds_of_many_modes_are_drawn():
