@@ -29,8 +29,8 @@ BEARINGS = (
 """Caption of the table of bearing forces."""
 ROOT_STRESS = (
     "Largest and smallest stress of each fillet over a passage. loaded: the fillet below the flank that "
-    "carries the load; radius: distance from the gear's axis; tangent: angle between the fillet and the "
-    "tooth's middle line"
+    "carries the load; radius: distance from the gear's axis, of a pinion the place along its own; tangent: "
+    "angle between the fillet and the tooth's middle line"
 )
 """Caption of the table of root stress."""
 EVERY_FLANK = "Root stress of every flank that differs: drive and coast flanks of each gear"

@@ -135,6 +135,23 @@ def test_the_check_of_a_config_names_the_stages_that_refuse(monkeypatch):
     ]
 
 
+BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
+STRENGTH = {
+    "pinion": BODY,
+    "face_gear": BODY,
+    "duty": [{"torque_n_m": 400, "speed_rpm": 6000, "hours": 1}],
+}
+
+
+@pytest.mark.parametrize(("name", "kinds"), [("P1", None), ("P2", "tapered teeth")])
+def test_a_check_says_which_teeth_the_standard_cannot_rate(name, kinds):
+    values = make_config(name) | {"strength": STRENGTH}
+    findings = check_config(config_of(values), values)
+    lines = [line for line in findings.remarks if line.startswith("strength: ")]
+    expected = f"strength: rated by contact alone, as ISO 6336 does not know {kinds}"
+    assert not findings.failures and (expected in lines) == bool(kinds)
+
+
 @pytest.mark.parametrize("moved", ["assembly.pinion_axial_um", "helix_angle_deg", "pressure_angle_deg.coast"])
 def test_a_search_may_not_move_teeth_to_a_kind_that_its_stage_refuses(moved, monkeypatch):
     monkeypatch.setitem(SPUR_ONLY, "search_island", ALL_KINDS)
