@@ -415,8 +415,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
     """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
 
-    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
-    half of that about its axis, as a thin disc.
+    A pinion whose teeth are not spur teeth at right angles tilts in any case. If its inertia is not given,
+    it has half of that about its axis, as a thin disc.
     """
     if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
         return 0.5 * shape.pinions[pinion].body.inertia

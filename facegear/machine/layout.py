@@ -205,8 +205,9 @@ class Layout:
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
     `kinematics` says what `pinion_radius` and `gear_radius` are. `kind` describes teeth other than spur teeth
-    at right angles; `pressure_angle` is that of their drive flank in the normal section. Properties are
-    computed once; their arrays are shared and must not be changed.
+    at right angles; `pressure_angle` is that of their drive flank in the normal section. `middle` is the
+    place of the middle of the face of spur pinions along their axes, None where it is not known: at the
+    meshes. Properties are computed once; their arrays are shared and must not be changed.
     """
 
     pinions: tuple[Pinion, ...]
@@ -218,6 +219,7 @@ class Layout:
     gear_radius: float
     kinematics: Kinematics
     kind: ToothKind | None = None
+    middle: float | None = None
 
     def __post_init__(self) -> None:
         if not self.pinions:
@@ -269,7 +271,17 @@ class Layout:
         """Lines of contact of drive and back flank, by the number of the gear."""
         if self.kind is not None:
             return tuple(self.kind.frames(gear.sign) for gear in self.gears)
-        return tuple(spur_frames(gear.sign, self.pressure_angle, self.mesh_radius) for gear in self.gears)
+        sizes = self.pressure_angle, self.pitch_radius, self.mesh_radius, self.pinion_middle
+        return tuple(spur_frames(gear.sign, *sizes) for gear in self.gears)
+
+    @cached_property
+    def meshes_tilt_pinions(self) -> bool:
+        """Whether the force of a mesh has a moment about a diameter of its pinion, or pushes it along its
+        axis: with spur teeth at right angles unless the middle of the pinion's face stands at the meshes.
+        """
+        if not self.kinematics.flanks_apart:
+            return False
+        return self.kind is not None or self.pinion_middle != self.mesh_radius
 
     @cached_property
     def back_arm(self) -> float:
@@ -295,8 +307,10 @@ class Layout:
 
     @cached_property
     def pinion_middle(self) -> float:
-        """Place of the middles of the pinions' faces along their axes, m; of spur teeth at the meshes."""
-        return self.mesh_radius if self.kind is None else self.kind.family.middle
+        """Place of the middles of the pinions' faces along their axes, m; at the meshes if not known."""
+        if self.kind is not None:
+            return self.kind.family.middle
+        return self.mesh_radius if self.middle is None else self.middle
 
     @cached_property
     def base_pitch(self) -> float:

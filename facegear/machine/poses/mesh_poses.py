@@ -231,8 +231,8 @@ class ForceDirections:
     def added_flank_rows(self, model: LinearModel) -> Array:
         """Return what the directions add to the rows of the ideal contact: `slopes` times `pose_rows`.
 
-        A mesh turns no pinion about a diameter, as the middle of its face takes the force: columns of the
-        pinions' tilts are zero.
+        Columns of the pinions' tilts are zero where the middles of their faces take the force
+        (`Layout.meshes_tilt_pinions`).
 
         Parameters
         ----------
@@ -244,7 +244,9 @@ class ForceDirections:
         (2 meshes, n) array
             m for a unit of each coordinate, drive flanks first.
         """
-        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=False)
-        tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
-        parts[:, :, np.isin(model.labels, tilts)] = 0.0
+        tilted = self.layout.meshes_tilt_pinions
+        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=tilted)
+        if not tilted:
+            tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
+            parts[:, :, np.isin(model.labels, tilts)] = 0.0
         return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))
