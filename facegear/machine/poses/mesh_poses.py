@@ -244,9 +244,9 @@ class ForceDirections:
         (2 meshes, n) array
             m for a unit of each coordinate, drive flanks first.
         """
-        tilted = self.layout.meshes_tilt_pinions
-        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=tilted)
-        if not tilted:
+        has_tilts = self.layout.meshes_tilt_pinions
+        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=has_tilts)
+        if not has_tilts:
             tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
             parts[:, :, np.isin(model.labels, tilts)] = 0.0
         return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))
