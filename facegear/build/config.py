@@ -116,16 +116,22 @@ class Config(Section):
         if self.transmission is None or self.transmission.mesh_kinematics == "printed":
             requirement = "loss_only without a transmission whose mesh_kinematics are geometric"
             raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, requirement)
+        if self.transmission.mesh_place == "moving":
+            requirement = "even, where lubrication.friction.effect is excitation"
+            raise ConfigError("transmission.mesh_place", "moving", requirement)
 
     def _check_law(self) -> None:
         """Refuse a load-dependent mesh law where something else takes a constant stiffness.
 
         That is printed kinematics, modes with the average stiffness, a search, and samples with other
-        teeth or with contact of their own.
+        teeth or with contact of their own. Printed kinematics know no coast flanks either.
         """
+        is_printed = self.transmission is not None and self.transmission.mesh_kinematics == "printed"
+        if is_printed and self.mesh_stiffness.coast:
+            raise ConfigError("mesh_stiffness.coast", "given", "none where mesh_kinematics is printed")
         if self.mesh_stiffness.mesh_law == "constant_load":
             return
-        if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
+        if is_printed:
             requirement = "geometric, where mesh_stiffness.mesh_law is load_dependent"
             raise ConfigError("transmission.mesh_kinematics", "printed", requirement)
         if self.modal.stiffness == "average":

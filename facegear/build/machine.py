@@ -362,11 +362,15 @@ class MachineInputs:
         """
         if self.harmonics is None:
             raise ValueError("harmonics: a mesh stiffness is needed to build a machine")
-        series, error = self.harmonics, self.unloaded_error
+        series, error, flanks = self.harmonics, self.unloaded_error, None
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
+            gears = [side.value for side in Side if side.value in self.transmission.face_gears]
+            flanks = stiffness_source.flank_series(series, gears)
             series = stiffness_source.series_of(series)
-        lumped_machine = machine(self.transmission, self.teeth, series, error, casing=self.casing)
+        lumped_machine = machine(
+            self.transmission, self.teeth, series, error, casing=self.casing, flank_stiffness=flanks
+        )
         if self.law is not None:
             lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
         if self.bodies is not None:

@@ -234,8 +234,6 @@ class Casing:
     def flank_rows(self, line: DriveLine | None = None) -> Array:
         """Return the derivatives of the flanks' deflections by the casing: bodies that tilt with their seats.
 
-        Spur teeth at right angles turn no pinion about a diameter.
-
         Parameters
         ----------
         line : DriveLine or None
@@ -253,7 +251,7 @@ class Casing:
                 by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
                 rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
             if (
-                layout.kind is not None
+                layout.meshes_tilt_pinions
                 and i in self.bearing_seats
                 and (line is None or i not in line.tilting)
             ):

@@ -159,7 +159,7 @@ def _highest_without_casing(machine: Machine) -> float:
     """Return the highest frequency of the machine on seats that stand still, drive flanks closed, Hz."""
     without_casing = replace(machine, casing=None)
     linear = without_casing.linear
-    meshes = drive_flanks(machine.layout, linear, float(without_casing.mean_stiffness.max()))
+    meshes = drive_flanks(machine.layout, linear, float(without_casing.mean_flank_stiffness.max()))
     return float(modes_of(linear, meshes).frequencies[-1])
 
 

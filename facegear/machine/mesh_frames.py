@@ -279,9 +279,11 @@ class ToothKind:
         )
 
 
-def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple[FlankFrame, FlankFrame]:
+def spur_frames(
+    sign: float, pressure_angle: float, pitch_radius: float, mesh_radius: float, middle: float
+) -> tuple[FlankFrame, FlankFrame]:
     """Return the lines of contact of spur teeth at right angles: both flanks in the section of the pitch
-    point, in which the middle of the pinion's face is taken to stand, so that no mesh tilts a pinion.
+    point, which tilt a pinion unless the middle of its face stands there.
 
     Parameters
     ----------
@@ -289,8 +291,12 @@ def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple
         1 for the upper, -1 for the lower gear.
     pressure_angle : float
         Pressure angle, rad.
+    pitch_radius : float
+        Pitch radius of the pinion, m.
     mesh_radius : float
         Distance of the meshes from the gear's axis, m.
+    middle : float
+        Place of the middle of the pinion's face along its axis, from the gear's axis, m.
 
     Returns
     -------
@@ -298,10 +304,11 @@ def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple
         Drive and back flank.
     """
     cosine, sine = float(np.cos(pressure_angle)), float(np.sin(pressure_angle))
+    outwards = mesh_radius - middle
     drive, back = (
         FlankFrame(
             normal=(side * sign * cosine, sign * sine, 0.0),
-            moment=(0.0, 0.0, 0.0),
+            moment=(-outwards * sign * sine, outwards * side * sign * cosine, -side * cosine * pitch_radius),
             gear_normal=(side * sign * cosine, sign * sine, 0.0),
             gear_point=(0.0, 0.0, mesh_radius),
             arm=float(side),

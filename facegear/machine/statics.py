@@ -343,7 +343,9 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         if machine.drive_line is not None and machine.static_machine is not machine:
             displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
     else:
-        solve = solve_together if machine.layout.kind is not None else solve_one_by_one
+        line = machine.drive_line
+        is_coupled = machine.layout.kind is not None or (line is not None and line.is_tilted_by_meshes)
+        solve = solve_together if is_coupled else solve_one_by_one
         displacements, forces = solve(machine.linear, law, cycles, gaps)
     force_balance = balance(machine.linear, displacements, forces, law_at_positions.stiffness, gaps)
     force_balance.require(RESIDUAL_LIMIT, names)

@@ -215,7 +215,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
         strains, about = None, None
-        if machine.casing is not None or machine.layout.kind is not None:
+        if machine.casing is not None or line.is_tilted_by_meshes:
             still = mean_equilibrium(machine_at_rest)
             strains = ring_strains(machine_at_rest, still.displacements)
             about = tilting_moments(machine_at_rest, still)

@@ -138,6 +138,11 @@ class Transmission(Section):
         description="geometric: the half turn between both sides of a pinion counts for every pinion; "
         "printed: for the first alone, as in equation (11) of the paper",
     )
+    mesh_place: Literal["even", "moving"] = Field(
+        "even",
+        description="place of the teeth in the mesh cycle, in motion: even: by the mean speed alone; moving: "
+        "a pinion that turns or floats ahead of it carries its meshes along",
+    )
     torque: Torque
     single_meshes: dict[str, SingleMesh] = Field({}, description="by `pinion/lower` or `pinion/upper`")
     single_pinions: dict[str, SinglePinion] = Field({}, description="by the pinion's name")
@@ -245,6 +250,8 @@ class Transmission(Section):
                 refuse(key, names, "none where mesh_kinematics is printed")
         if self.operating_pose != "none":
             refuse("operating_pose", self.operating_pose, "none where mesh_kinematics is printed")
+        if self.mesh_place != "even":
+            refuse("mesh_place", self.mesh_place, "even where mesh_kinematics is printed")
         for key, value in (
             ("pinion.clearance_um", self.pinion.bearing_clearance_um or None),
             ("pinion.runout", self.pinion.runout),

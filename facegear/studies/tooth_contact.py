@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from typing import Any, Self
 
+import pandas as pd
+
 from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
 from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
@@ -55,7 +57,8 @@ class PairExcitation:
 
     `backlash_added` (um) is the difference of the pair's backlash from that of the config. `answers` are
     those of the contact where the pair was put into contact. `tables` are those of the flanks where k depends
-    on the load. `lubricated_teeth` are given where the pair is lubricated.
+    on the load. `lubricated_teeth` are given where the pair is lubricated. `harmonics` is the table of stage
+    stiffness that may give single flanks a stiffness of their own.
     """
 
     numbers: ToothNumbers
@@ -65,6 +68,7 @@ class PairExcitation:
     answers: PairAnswers | None = None
     tables: TablesOf | None = None
     lubricated_teeth: "LubricatedTeeth | None" = None
+    harmonics: pd.DataFrame | None = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
         """Return section `transmission` with `backlash_added` on the backlash of all meshes.

@@ -300,8 +300,8 @@ class ForceDirections:
     def added_flank_rows(self, model: LinearModel) -> Array:
         """Return what the directions add to the rows of the ideal contact: `slopes` times `pose_rows`.
 
-        A mesh of spur teeth turns no pinion about a diameter, as the middle of its face takes the force:
-        columns of these pinions' tilts are zero.
+        Columns of the pinions' tilts are zero where the middles of their faces take the force
+        (`Layout.meshes_tilt_pinions`).
 
         Parameters
         ----------
@@ -313,9 +313,9 @@ class ForceDirections:
         (2 meshes, n) array
             m for a unit of each coordinate, drive flanks first.
         """
-        are_tilted = self.layout.kind is not None
-        parts = pose_rows(model, self.layout, self.middle, with_pinions=are_tilted)
-        if not are_tilted:
+        has_tilts = self.layout.meshes_tilt_pinions
+        parts = pose_rows(model, self.layout, self.middle, with_pinions=has_tilts)
+        if not has_tilts:
             tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
             parts[:, :, np.isin(model.labels, tilts)] = 0.0
         return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))

@@ -226,7 +226,7 @@ class Block {
 // Move disturbances over the steps whose polynomials `w` holds. block: null where they go one by one.
 template <class L, class Law>
 void move_tangents(Work<L, Law>& w, Tangents<L> tangents, Block<L::lanes>* block) {
-    const bool plain = w.rings.count() == 0 && w.friction.count() == 0 && !w.shape->coupled;
+    const bool plain = w.rings.count() == 0 && w.friction.count() == 0 && !w.shape->coupled && !Law::moves;
     const Index order = plain ? order_needed(w) : w.order;
     if (block != nullptr && plain && tangents.columns > 1) {
         for (Index first = 0; first < tangents.columns; first += Block<L::lanes>::count)
