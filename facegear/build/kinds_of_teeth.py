@@ -27,15 +27,12 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
-    **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
-    **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
+    **dict.fromkeys(("rating", "dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
     "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
     **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
-    "operating_pose": ALL_KINDS,
-    **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
+    "sharing_map": ALL_KINDS,
 }
-"""Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""
+"""Keys of section `tooth_pair` that a stage cannot take yet, by its name."""
 
 
 def refusing_names(stages: Iterable[str], values: Mapping[str, Any]) -> list[str]:

@@ -180,6 +180,21 @@ class ToothKind:
         """Motion of the pinion against the upper gear."""
         return RelativeMotion(self.pinion_teeth / self.gear_teeth, self.shaft_angle, self.offset)
 
+    def motion(self, sign: float) -> RelativeMotion:
+        """Return the motion of the pinion against a gear, in the mesh frame of that gear.
+
+        Parameters
+        ----------
+        sign : float
+            1 for the upper, -1 for the lower gear.
+
+        Returns
+        -------
+        RelativeMotion
+            Ratio, shaft angle and offset.
+        """
+        return self._motion if sign > 0.0 else self.family.below.motion
+
     @property
     def lean(self) -> Array:
         """Rotation (3, 3) from tangent, gear axis and outwards to the pinion's x, y, z."""

@@ -8,6 +8,7 @@ from facegear.build.machine import MachineInputs
 from facegear.build.plans import settings
 from facegear.errors import ConfigError
 from facegear.machine.poses.fixed_point import operating_pose
+from facegear.machine.poses.posed_flanks import flank_surfaces
 from facegear.machine.poses.surface import PoseSurface
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
@@ -128,16 +129,18 @@ def duty_poses(
     pose_surface, rows = PoseSurface.of_arrays(surface), []
     for number, load in enumerate(strength.duty, start=1):
         machine = inputs.at_torque(load.torque_n_m).build()
-        result = operating_pose(machine, pose_surface)
-        for mesh, name in enumerate(machine.layout.mesh_names):
+        result, names = operating_pose(machine, pose_surface), machine.layout.mesh_names
+        surfaces = flank_surfaces(machine, pose_surface)
+        for mesh, name in enumerate(names):
             for back, flank in enumerate(FLANKS):
-                contact = contact_at(pose_surface.pair, result.poses.errors(mesh, bool(back)))
+                own = surfaces[mesh + len(names) * back]
+                contact = contact_at(own.pair, result.poses.errors(mesh, bool(back)))
                 carries = bool(back) == (result.forces[mesh] < 0.0)
                 rows.append(
                     (
                         *(number, load.torque_n_m, name, flank),
                         abs(result.forces[mesh]) if carries else 0.0,
-                        np.nan if contact is None else 1e3 * contact.y,
+                        np.nan if contact is None else 1e3 * contact.path,
                         np.degrees(result.angle[mesh]),
                         result.factor[mesh],
                     )

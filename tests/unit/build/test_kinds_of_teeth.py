@@ -20,8 +20,8 @@ from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
-NOT_STAGES = {"displaced_contact", "friction_in_motion"}
-"""Names in SPUR_ONLY of an answer from Python that no stage gives, and of an effect of friction."""
+NOT_STAGES = {"friction_in_motion"}
+"""Name in SPUR_ONLY of an effect of friction."""
 
 
 def make_config(name: str, **changes) -> dict:
@@ -122,8 +122,8 @@ def test_a_stage_that_takes_spur_teeth_alone_refuses_others_by_key(changes, line
 def test_the_door_refuses_before_any_work(monkeypatch):
     monkeypatch.setitem(SPUR_ONLY, "compliance", ALL_KINDS)
     gearbox = facegear.load(make_config("P1"), results=None)
-    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage displaced_contact"):
-        gearbox.displaced_contact()
+    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage compliance"):
+        gearbox.contact()
 
 
 def test_the_check_of_a_config_names_the_stages_that_refuse(monkeypatch):
