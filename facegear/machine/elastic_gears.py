@@ -19,11 +19,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.machine.elastic_coordinates import TILT_X, TILT_Y, Coordinates, X, Y, coordinates
+from facegear.machine.elastic_coordinates import TILT_X, TILT_Y, Coordinates, X, Y, coordinates, gear_forces
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
-from facegear.machine.mesh_frames import rim_forces
-from facegear.parts.reduced_body import ReducedBody, RimForces
+from facegear.parts.reduced_body import ReducedBody
 
 ATTACHED_FREQUENCY = 4.0
 """Frequency of an attached coordinate over that of the fastest mode kept of its gear.
@@ -77,7 +76,8 @@ class ElasticGears:
             unit force on flank j; 0 is the drive flank, 1 the back flank.
         """
         of_gears = {
-            gear: body.residual_of_flanks(_forces(self.layout, gear)) for gear, body in self.bodies.items()
+            gear: body.residual_of_flanks(gear_forces(self.layout, gear))
+            for gear, body in self.bodies.items()
         }
         return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
@@ -125,7 +125,7 @@ class ElasticGears:
             dampers=append_block(
                 model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - damping_of_lumped_model]])
             ),
-            slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
+            slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool)),
             spin=spin,
         )
 
@@ -137,7 +137,7 @@ class ElasticGears:
         coordinates.
         """
         layout, face_gear = self.layout, self.layout.gears[gear]
-        elastic = coordinates(body, face_gear.sign, layout.angles, _forces(layout, gear))
+        elastic = coordinates(body, face_gear.sign, layout.angles, gear_forces(layout, gear))
         old, new = model.size, len(elastic.letters)
         speed = face_gear.sign * layout.pinion_teeth / layout.gear_teeth
         hub, mass_hub, gyroscopic_hub = _hub_terms(layout, gear, body, elastic)
@@ -172,11 +172,6 @@ class ElasticGears:
                 append_block(before.centrifugal, speed**2 * elastic.centrifugal),
             ),
         )
-
-
-def _forces(layout: Layout, gear: int) -> RimForces:
-    """Return the unit forces of the flanks of a gear's meshes on its rim."""
-    return rim_forces(layout.flank_frames[gear], layout.gears[gear].sign)
 
 
 def _attached_ways(residual: Array) -> Array:

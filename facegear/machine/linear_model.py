@@ -81,9 +81,10 @@ class LinearModel:
         Bearings with clearance.
     spin
         What turning bodies add, None for nothing.
-    slopes : (2, meshes, n)
+    slopes : (2 or 4, meshes, n)
         Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
-        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
+        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; then of teeth that push outwards W itself and
+        the motion of the rim outwards, m for a metre; None for rigid gears.
     tangent_loads : (n,)
         The part of `forces` that tangents of rolling bearings add: tangent times motion less load, both at
         the mean load; None without rolling bearings.
@@ -181,22 +182,24 @@ class LinearModel:
         added_count = self.size - rows.shape[-1]
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
 
-    def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
+    def with_slopes(self, meshes: Mask, added_slopes: Array | None = None) -> Array | None:
         """Return `slopes` with columns for k more coordinates behind the n present ones.
 
         Parameters
         ----------
         meshes : (meshes,) array of bool
             The meshes below which these coordinates move the rim; the others get zeros.
-        added_slopes : (2, meshes of a gear, k) array
-            Slopes by k more coordinates below these meshes, 1/m and m/m.
+        added_slopes : (2 or 4, meshes of a gear, k) array or None
+            Slopes by k more coordinates below these meshes, 1/m and m/m; None for one that moves no rim.
 
         Returns
         -------
-        (2, meshes, n + k) array
+        (2 or 4, meshes, n + k) array or None
             In the units of `slopes`, 1/m and m/m.
         """
-        slopes = np.zeros((2, meshes.size, self.size + added_slopes.shape[2]))
+        if added_slopes is None:
+            return None if self.slopes is None else np.pad(self.slopes, ((0, 0), (0, 0), (0, 1)))
+        slopes = np.zeros((len(added_slopes), meshes.size, self.size + added_slopes.shape[2]))
         if self.slopes is not None:
             slopes[:, :, : self.size] = self.slopes
         slopes[:, meshes, self.size :] = added_slopes

@@ -12,7 +12,7 @@ At a mesh a gear has the tangent, its axis from the lower to the upper gear, and
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, cos, pi, sin
+from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
@@ -78,7 +78,7 @@ class FlankFrame:
         )
 
 
-def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float) -> RimForces:
+def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float, middle: float = 0.0) -> RimForces:
     """Return unit forces of the flanks of a mesh on the rim of the gear, where their lines of contact cross
     the pitch plane.
 
@@ -90,24 +90,27 @@ def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float) -> RimForces:
         Lines of contact of drive and back flank.
     sign : float
         1 for the upper, -1 for the lower gear, dimensionless.
+    middle : float
+        Angle past that of the pinion at which the middle of its face stands, rad.
 
     Returns
     -------
     RimForces
         Heights count towards the teeth, against the axis of the upper gear.
     """
-    directions, turns = np.zeros((len(frames), 3)), np.zeros(len(frames))
+    directions, (turns, radii) = np.zeros((len(frames), 3)), np.zeros((2, len(frames)))
     for flank, frame in enumerate(frames):
         (n_across, n_height, n_outwards), (across, height, outwards) = frame.gear_normal, frame.gear_point
         way = -height / n_height
-        turn = atan2(across + way * n_across, outwards + way * n_outwards)
+        place = across + way * n_across, outwards + way * n_outwards
+        turn = atan2(*place)
         directions[flank] = (
             -sign * n_height,
             cos(turn) * n_across - sin(turn) * n_outwards,
             sin(turn) * n_across + cos(turn) * n_outwards,
         )
-        turns[flank] = turn
-    return RimForces(directions, turns)
+        turns[flank], radii[flank] = turn, hypot(*place)
+    return RimForces(directions, turns, radii, middle)
 
 
 @dataclass(frozen=True)
@@ -194,6 +197,11 @@ class ToothKind:
             Ratio, shaft angle and offset.
         """
         return self._motion if sign > 0.0 else self.family.below.motion
+
+    @property
+    def middle_turn(self) -> float:
+        """Angle round the gears' axis by which the offset moves the middle of the pinion's face, rad."""
+        return atan2(self.offset, self.family.middle * sin(self.shaft_angle))
 
     @property
     def lean(self) -> Array:

@@ -12,12 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.machine.elastic_coordinates import flank_rows, rim_slopes
+from facegear.machine.elastic_coordinates import flank_rows, gear_forces, rim_slopes
 from facegear.machine.elastic_gears import ElasticGears, append_block
 from facegear.machine.layout import Layout
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.mesh_frames import rim_forces
 from facegear.parts.reduced_body import ReducedBody
 
 RANK_TOLERANCE = 1e-10
@@ -73,9 +72,8 @@ class StaticGears:
             meshes = np.array([g == gear for _, g in layout.meshes])
             if self.with_slopes:
                 gear_rows, slopes = posed_rows(body, layout, gear)
-                lengths = np.abs(np.concatenate([gear_rows, layout.gear_radius * slopes[0], slopes[1]])).max(
-                    axis=0
-                )
+                motions = [gear_rows, layout.gear_radius * slopes[0], *slopes[1:]]
+                lengths = np.abs(np.concatenate(motions)).max(axis=0)
             else:
                 gear_rows, slopes = static_rows(body, layout, gear), None
                 lengths = np.abs(gear_rows).max(axis=0)
@@ -141,15 +139,15 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
     Returns
     -------
     pair of arrays
-        R of the flanks (2 meshes of the gear, p), drive flanks first, and of the slopes (2, meshes, p):
-        dW/dr and dW/dphi for a unit of each of p coordinates with unit stiffness. R R^T of the flanks is
-        in m/N.
+        R of the flanks (2 meshes of the gear, p), drive flanks first, and of the slopes (2 or 4, meshes, p):
+        those of `rim_slopes` for a unit of each of p coordinates with unit stiffness. R R^T of the flanks
+        is in m/N.
     """
     shapes = _shapes(body.compliance_with_slope(layout.gear_radius))
     flanks, slopes = _waves(shapes, layout, gear)
     columns = _condense_columns(np.concatenate([flanks, *slopes]))
-    radial, around = np.split(columns[len(flanks) :], 2)
-    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, around])
+    radial, *remaining = np.split(columns[len(flanks) :], len(slopes))
+    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, *remaining])
 
 
 ROUND = 1
@@ -173,7 +171,7 @@ def _shapes(compliances: Array) -> Array:
 
 
 def _waves(shapes: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
-    """Return motions of the flanks (2 meshes, c), and slopes (2, meshes, c), by waves of all orders.
+    """Return motions of the flanks (2 meshes, c), and slopes (2 or 4, meshes, c), by waves of all orders.
 
     A wave is a coordinate with unit stiffness; order 0 has k of them, every other order k cosines and k
     sines. shapes (orders, i, k): `_shapes`. The slopes are empty where `shapes` has none.
@@ -182,14 +180,14 @@ def _waves(shapes: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
     orders = np.repeat(np.arange(len(shapes)), count)
     motions, slope = np.split(shapes.transpose(1, 0, 2).reshape(-1, orders.size), [3])
     round_axis = np.where(orders == 0, np.tile(np.arange(count) == ROUND, len(shapes)), 0.0)
-    forces = rim_forces(layout.flank_frames[gear], layout.gears[gear].sign)
+    forces = gear_forces(layout, gear)
     flanks, slopes = [], []
     for part in (0, 1):
         has_wave, parts = orders >= part, np.full(orders.size, part)  # order 0 has no sine
         rows = flank_rows(orders, parts, motions, round_axis, forces, layout.angles)
         flanks.append(rows[:, has_wave])
         slopes += [
-            rim_slopes(orders, parts, motions[0], radial, round_axis, layout.angles)[..., has_wave]
+            rim_slopes(orders, parts, motions, radial, round_axis, forces, layout.angles)[..., has_wave]
             for radial in slope
         ]
     return np.concatenate(flanks, axis=1), np.concatenate(slopes, axis=2) if slopes else np.zeros((0, 0, 0))

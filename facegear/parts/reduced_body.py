@@ -19,10 +19,21 @@ class RimForces:
         Their parts along the axis towards the teeth, round the axis as angles grow, and outwards.
     turns : (2,)
         Angles past that of the pinion at which they press, rad.
+    radii : (2,)
+        Distances from the axis at which they press, m.
+    middle : float
+        Angle past that of the pinion at which the middle of its face stands, rad.
     """
 
     directions: Array
     turns: Array
+    radii: Array
+    middle: float = 0.0
+
+    @property
+    def push_outwards(self) -> bool:
+        """Whether a flank pushes the rim along the radius, as those of spur teeth never do."""
+        return bool(self.directions[:, 2].any())
 
 
 @dataclass(frozen=True, eq=False)

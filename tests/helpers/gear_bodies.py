@@ -108,7 +108,11 @@ def flank_direction(angle: float, back: bool = False) -> np.ndarray:
 def spur_forces(sign: float = 1.0) -> RimForces:
     """Unit forces of both flanks of spur teeth on the rim of the upper or the lower gear."""
     mirror = np.array([1.0, sign, 1.0])
-    return RimForces(np.stack([flank_direction(ANGLE, back) * mirror for back in (False, True)]), np.zeros(2))
+    return RimForces(
+        np.stack([flank_direction(ANGLE, back) * mirror for back in (False, True)]),
+        np.zeros(2),
+        np.full(2, 0.268),
+    )
 
 
 def gearbox(body=None, **changes):

@@ -18,13 +18,12 @@ from facegear.errors import NotConverged
 from facegear.machine.flanks import significant_forces
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.poses.mesh_poses import PARTS, ForceDirections, MeshPoses, mesh_poses
+from facegear.machine.poses.mesh_poses import PARTS, ForceDirections, MeshPoses, mesh_poses, rim_levers
 from facegear.machine.poses.posed_flanks import (
     closing_beyond,
     flank_reactions,
     flank_surfaces,
     force_slopes,
-    ideal_slopes,
     linear_energy,
     mesh_energy,
     nominal_contact,
@@ -248,8 +247,8 @@ def pose_at(
     slopes = force_slopes(surfaces, reactions)
     if ideal:
         slopes, closure = np.zeros_like(slopes), np.zeros_like(closure)
-    lever = 0.0 if ideal else float(ideal_slopes(surface.pair)[2])
-    directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
+    middle = surface.pair.mean_radius
+    directions = ForceDirections(layout, middle, slopes, None if ideal else rim_levers(layout, middle))
     beyond = directions.added_flank_rows(linear) @ displacements
     return OperatingPose(
         machine=replace(_with(machine, factor, closure - beyond), directions=directions),

@@ -20,8 +20,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.machine.elastic_coordinates import gear_forces
 from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.machine.linear_model import LinearModel
+from facegear.machine.mesh_frames import ToothKind
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.tooth_family import RelativeMotion
 
@@ -135,7 +137,9 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
     Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
     at the pinion. Coordinates of gears that bend lift the teeth, a shift along the axis, and lean them with
     the rim below the mesh: by its slope along the radius about the tangent, by that round the axis about the
-    line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
+    line through the pitch point that is parallel to the pinion's axis, which is an offset as well. The motion
+    of a rim round the axis moves no path, as a turn of the gear does not. That of spur teeth along the
+    pinion's axis does not either, and is left out.
 
     Parameters
     ----------
@@ -153,7 +157,7 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
     (4, meshes, n) array
         m and rad for a unit of each coordinate.
     """
-    offset, shift, angle, _ = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
+    rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
     number_of_label = {label: number for number, label in enumerate(linear.labels)}
     for mesh, (i, g) in enumerate(layout.meshes):
         shifts, turns = _pinion_parts(layout, g, middle)
@@ -168,13 +172,41 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
             rows[:, mesh, layout.first_tilts[g] : layout.first_tilts[g] + 2] = turns
     if linear.seat_tilts is not None:
         _add_seat_tilts(linear, layout, middle, rows, with_pinions)
-    _bending(linear, layout, shift)
-    angle += leaning_rows(linear, layout)
-    if linear.slopes is not None:
-        sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
-        pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
-        offset += sides * pitch_radius / middle * linear.slopes[1]
+    if linear.slopes is not None and layout.kind is not None:
+        for mesh, (_, g) in enumerate(layout.meshes):
+            rows[:, mesh] += _rim_parts(layout, layout.kind, g, middle) @ linear.slopes[:, mesh]
+    elif linear.slopes is not None:
+        _bend_spur_rims(linear, layout, middle, rows)
     return rows
+
+
+def _rim_parts(layout: Layout, kind: ToothKind, gear: int, middle: float) -> Array:
+    """Return the derivatives (4, 4) of PARTS by the slopes and motions of a rim below a mesh, those of
+    `LinearModel.slopes` of teeth that push outwards.
+
+    The rim moves the teeth as a rigid whole about the point of the pitch plane below the middle of the
+    pinion's face.
+    """
+    axes, sign = layout.axes(gear), layout.gears[gear].sign
+    place = middle_place(middle, axes)
+    radius, up = np.hypot(*place[:2]), np.array([0.0, 0.0, 1.0])
+    outwards = np.append(place[:2] / radius, 0.0)
+    around = sign * np.cross(outwards, up)
+    turns = np.cross(np.stack([outwards, around / radius, 0.0 * up, 0.0 * up]), up)
+    motions = np.stack([0.0 * up, 0.0 * up, up, outwards])
+    motions += np.cross(turns, (place[2] + kind.pitch_height(sign)) * up)
+    by_shift, by_turn = _parts(axes, middle)
+    return -by_shift @ motions.T - by_turn @ turns.T
+
+
+def _bend_spur_rims(linear: LinearModel, layout: Layout, middle: float, rows: Array) -> None:
+    """Add to `rows` (4, meshes, n) what rims that bend below spur teeth add, in place."""
+    offset, shift, angle, _ = rows
+    _bending(linear, layout, shift)
+    angle -= linear.slopes[0]
+    sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
+    pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
+    offset += sides * pitch_radius / middle * linear.slopes[1]
 
 
 def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
@@ -227,24 +259,28 @@ def _add_seat_tilts(
             rows[:, mesh] += _pinion_parts(layout, g, middle)[1] @ tilts[i]
 
 
-def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
-    """Return the part of the error of the shaft angle that the slopes of rims that bend make.
+def rim_levers(layout: Layout, middle: float) -> Array:
+    """Return the moments that unit forces of flanks have about the tangent below the middle of the pinion's
+    face, of which rows of rims that bend know nothing.
 
     Parameters
     ----------
-    linear : LinearModel
-        Linear model of the machine.
     layout : Layout
         Bodies and mesh geometry.
+    middle : float
+        Position of the middle of the pinion's face on its axis, m.
 
     Returns
     -------
-    (meshes, n) array
-        rad for a unit of each coordinate.
+    (2 meshes,) array
+        m, drive flanks first: the part of a force along the gear's axis times its way outwards from there.
     """
-    if linear.slopes is None:
-        return np.zeros((len(layout.meshes), linear.size))
-    return -linear.slopes[0]
+    levers = np.zeros((2, len(layout.meshes)))
+    for mesh, (_, gear) in enumerate(layout.meshes):
+        forces = gear_forces(layout, gear)
+        radius = np.hypot(*middle_place(middle, layout.axes(gear))[:2])
+        levers[:, mesh] = forces.directions[:, 0] * (forces.radii - radius)
+    return levers.ravel()
 
 
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
@@ -279,22 +315,23 @@ class ForceDirections:
         Position of the middle of the pinion's face on its axis, m.
     slopes : (2 meshes, parts)
         Derivatives of the deflections by the parts of a pose, drive flanks first; m/m and m/rad.
-    lever
-        Lever of the ideal contact for an error of the shaft angle, m/rad: rows of a model have it of bodies
-        that tilt, but not of rims that bend.
+    levers : (2 meshes,)
+        `rim_levers`, m: rows of a model have them of bodies that tilt, but not of rims that bend; None to
+        leave them out.
     """
 
     layout: Layout
     middle: float
     slopes: Array
-    lever: float = 0.0
+    levers: Array | None = None
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model whose flank rows have these directions: `added_flank_rows`, and `lever` times
-        the error of the shaft angle by rims that bend, are added to its rows.
+        """Return the model whose flank rows have these directions: `added_flank_rows` less `levers` times
+        the slopes of rims along the radius is added to its rows.
         """
-        leaning = self.lever * leaning_rows(base_model, self.layout)
-        added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
+        added_rows = self.added_flank_rows(base_model)
+        if self.levers is not None and base_model.slopes is not None:
+            added_rows -= self.levers[:, None] * np.tile(base_model.slopes[0], (2, 1))
         return replace(base_model, rows=base_model.rows + added_rows)
 
     def added_flank_rows(self, model: LinearModel) -> Array:

@@ -13,9 +13,9 @@ from facegear.build.teeth_on_body import TeethOnBody, teeth_on_body
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
+from facegear.machine.elastic_coordinates import gear_forces
 from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import Machine
-from facegear.machine.mesh_frames import rim_forces
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
 from facegear.machine.turning_modes import (
@@ -163,7 +163,7 @@ def _parts(
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speeds_rpm[0] / ratio / body_tables.RPM
     number = [member.side for member in machine.gears].index(Side(gear))
-    forces = rim_forces(machine.flank_frames[number], machine.gears[number].sign)
+    forces = gear_forces(machine, number)
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
     return {
         "bodies": body_tables.body_table(gear, body, patch, forces, machine.angles),

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from kinds_of_teeth import public_section
 from public_teeth import NAMES
+from skfem import Basis, ElementHex2
 
 from facegear.build.config import Config
-from facegear.build.elastic_bodies import body_shape, contact_patch
+from facegear.build.elastic_bodies import body_shape, contact_patch, fitted_shape
 from facegear.build.teeth_on_body import teeth_on_body
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair
@@ -17,13 +18,16 @@ from facegear.errors import ConfigErrors
 from facegear.parts.body_mesh import body_mesh
 from facegear.parts.matrices import around, body_matrices, rigid_motions
 from facegear.parts.reduced_body import ReducedBody
-from facegear.parts.section import section_properties
+from facegear.parts.section import mass_properties, section_properties
 from facegear.pipeline.stages import gear_bodies as stage
 from facegear.schema.base import parse
 from facegear.schema.gear_body import BodySection
 from facegear.schema.transmission import Transmission
 from facegear.teeth import face_gear, face_gear_fillet
+from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.placement import pair_at
+from facegear.teeth.tooth_mesh import gear_tooth
 
 SIDES = {"upper": 1.0, "lower": -1.0}
 DISC = {
@@ -127,3 +131,18 @@ def test_bodies_are_solved_under_teeth_of_every_kind(name):
     frequencies = [found["modes"].query("gear == @gear")["frequency_hz"].to_numpy() for gear in SIDES]
     same = frequencies[0].size == frequencies[1].size and np.allclose(*frequencies, rtol=1e-12)
     assert same == (name != "P3")
+
+
+@pytest.mark.parametrize(("name", "side"), [("P1", "upper"), ("P2", "upper"), ("P3", "lower")])
+def test_layer_of_inclined_teeth_weighs_what_the_meshed_teeth_weigh(name, side):
+    """The rim below is solid up to the line of the roots, and the back of the meshed rim is flat."""
+    teeth, body = teeth_of(name), parse(BodySection, DISC | {"teeth": "fitted"})
+    design, shape = pair_at(pair(teeth).design, side, "drive"), body_shape(body, teeth, side)
+    tooth = gear_tooth(design, MeshSizes(*(size * design.module for size in (0.5, 1.6, 0.9))))
+    mesh, _ = hex_mesh(tooth.nodes, tooth.hexes)
+    volume = teeth.face_gear_teeth * float(Basis(mesh, ElementHex2(), intorder=5).dx.sum())
+    (inner, outer), layer = shape.teeth, shape.layer
+    top = [layer.back + layer.rise(r) for r in (inner, outer)]
+    rim = mass_properties(np.array([(inner, 0.0), (outer, 0.0), (outer, top[1]), (inner, top[0])]), 1.0)[0]
+    assert (volume - rim) / mass_properties(layer.corners, 1.0)[0] == pytest.approx(layer.density, rel=1e-3)
+    assert 0.03 < fitted_shape(body, teeth, side).layer.hoop < 0.1  # 0.06 of common teeth

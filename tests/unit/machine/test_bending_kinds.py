@@ -28,13 +28,13 @@ from wrench_machines import (
 )
 
 from facegear.harmonics import Harmonics
-from facegear.machine.elastic_coordinates import coordinates
+from facegear.machine.elastic_coordinates import coordinates, gear_forces
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Pinion, Role, Side, Tilt
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.machine import Damping, Machine, OpenFlanks
-from facegear.machine.mesh_frames import rim_forces
+from facegear.machine.poses.mesh_poses import pose_rows
 from facegear.machine.static_gears import at_rest, static_rows
 from facegear.machine.statics import mean_equilibrium
 from facegear.machine.torques import balanced_torques
@@ -121,7 +121,8 @@ def carried(centre: float, height: float):
     radii, heights = centre + np.array([-0.01, 0.0, 0.01]), np.array([-0.02, 0.0])
     ring = WholeRing(radii, heights, gear_bodies.STEEL, 1)
     matrices, patch = body_matrices(ring.section, ring.mesh), Patch(height, 0.0)
-    mesh = [patch.rows(n, matrices.on_teeth @ rigid_motions(matrices.elements, n)) for n in (0, 1)]
+    means = [matrices.on_teeth @ rigid_motions(matrices.elements, n) for n in (0, 1)]
+    mesh = [patch.rows(n, each) for n, each in enumerate(means)]
     return replace(
         gear_bodies.small_body(),
         order=np.array([0, 0, 1, 1]),
@@ -132,7 +133,18 @@ def carried(centre: float, height: float):
         hub=np.zeros((2, 4)),
         hub_spin=np.zeros(4),
         round=np.array([0.0, 1.0, 0.0, 0.0]),
+        slope=np.concatenate([each[-1] for each in means]),
     )
+
+
+def hub_columns(layout, gear):
+    """Columns of a hub that moves as the waves of `carried` do, each with its factor.
+
+    Waves: order 0 along and round the axis, then cosine and sine; heights count to the teeth.
+    """
+    sign, first, tilts = layout.gears[gear].sign, 4 * (2 + gear), layout.first_tilts[gear]
+    same = [(first + 2, -sign), (first + 3, sign), (first + 1, -1.0), (first, 1.0)]
+    return [*same, (tilts, sign), (tilts + 1, sign)]
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -142,19 +154,51 @@ def test_rim_that_moves_as_a_rigid_whole_feels_the_wrench_of_every_flank(name):
     rigid = layout.kinematics.flank_rows(layout)
     meshes = len(layout.meshes)
     for gear, upper in ((0, False), (1, True)):
-        sign, first = layout.gears[gear].sign, 4 * (2 + gear)
-        tilts = layout.first_tilts[gear]
-        # as coordinates of order 0 along and round the axis, then cosine and sine: heights count to the teeth
-        same = [(first + 2, -sign), (first + 3, sign), (first + 1, -1.0), (first, 1.0)]
-        same += [(tilts, sign), (tilts + 1, sign)]
-        forces = rim_forces(layout.flank_frames[gear], sign)
+        sign, forces = layout.gears[gear].sign, gear_forces(layout, gear)
         for number, sigma in enumerate((1, -1)):
             radius = on_rim(teeth, 0.0, upper, sigma)[1]
             rows = coordinates(carried(radius, height), sign, layout.angles, forces).rows
             mine = rows.reshape(2, 2, -1)[number]
             wrench = rigid[number * meshes + 2 * gear + np.arange(2)]
-            expected = np.stack([factor * wrench[:, column] for column, factor in same], axis=1)
+            columns = hub_columns(layout, gear)
+            expected = np.stack([factor * wrench[:, column] for column, factor in columns], axis=1)
             np.testing.assert_allclose(mine, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_rim_that_moves_as_a_rigid_whole_moves_the_pose_of_every_mesh_as_its_hub_does(name):
+    """But for its motion round the axis, which moves no path."""
+    teeth, height = KINDS[name], 0.018
+    layout = layout_of(teeth, tilt=Tilt(0.3, 1e7, height))
+    axes = place(teeth, 0.0, True)
+    x, y, _ = teeth.offset * axes.x + teeth.face * axes.a
+    body, turn = carried(hypot(x, y), height), atan2(x, -y)
+    rigid = balanced_machine(layout)
+    for gear in range(2):
+        linear = replace(rigid, bodies=ElasticGears(layout, {gear: body})).linear
+        rows = pose_rows(linear, layout, teeth.face)
+        first, hub = layout.dof, 4 * (2 + gear)
+        for mesh in 2 * gear + np.arange(2):
+            at = layout.angles[mesh - 2 * gear] + turn
+            over = body.mesh[1]
+            rounds = [0.0, 0.0, *(part * over[mode] for mode in (2, 3) for part in (sin(at), -cos(at)))]
+            for number, (column, factor) in enumerate(hub_columns(layout, gear)):
+                expected = factor * rows[:, mesh, column]
+                expected = expected - rounds[number] * rows[:, mesh, hub : hub + 2] @ [cos(at), sin(at)]
+                np.testing.assert_allclose(rows[:, mesh, first + number], expected, rtol=0, atol=1e-12)
+
+
+def balanced_machine(layout, **changes) -> Machine:
+    """Two inputs that drive both gears alike."""
+    ratio = layout.gear_teeth / layout.pinion_teeth
+    return Machine(
+        layout=layout,
+        torques=balanced_torques(layout, np.array([900.0, 800.0]), -850.0 * ratio),
+        stiffness=Harmonics(np.zeros(1), np.array([K])),
+        error=changes.pop("error", Harmonics(np.zeros(1), np.zeros(1))),
+        half_backlash=np.full(4, 5e-6),
+        damping=Damping(800.0, 300.0, 1e-6, OpenFlanks.CONTACT_ONLY),
+    )
 
 
 def bent(teeth: Teeth, stiffer=1.0, **changes):
@@ -166,15 +210,7 @@ def bent(teeth: Teeth, stiffer=1.0, **changes):
         times = 1600.0 * stiffer
         frequency = body.frequency * np.sqrt(times)
         bodies[gear] = replace(body, frequency=frequency, static=body.static / times)
-    elastic = ElasticGears(layout, bodies)
-    rigid = Machine(
-        layout=layout,
-        torques=balanced_torques(layout, np.array([900.0, 800.0]), -850.0 * teeth.gear / teeth.pinion),
-        stiffness=Harmonics(np.zeros(1), np.array([K])),
-        error=changes.pop("error", Harmonics(np.zeros(1), np.zeros(1))),
-        half_backlash=np.full(4, 5e-6),
-        damping=Damping(800.0, 300.0, 1e-6, OpenFlanks.CONTACT_ONLY),
-    )
+    elastic, rigid = ElasticGears(layout, bodies), balanced_machine(layout, **changes)
     return replace(rigid, bodies=elastic, softening=elastic.softening()), rigid
 
 
