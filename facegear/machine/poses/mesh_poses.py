@@ -177,6 +177,13 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
     return rows
 
 
+def _axes(layout: Layout, gear: int) -> RelativeMotion:
+    """Return the motion of the pinions against a gear, in the mesh frame of that gear."""
+    if layout.kind is not None:
+        return layout.kind.motion(layout.gears[gear].sign)
+    return RelativeMotion(layout.pinion_teeth / layout.gear_teeth)
+
+
 def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
     """Return the derivatives (4, 3) of PARTS by motions of the middle of a pinion's face and by its turns, in
     the mesh frame, m/m and m/rad.
@@ -194,7 +201,7 @@ def _pinion_parts(layout: Layout, gear: int, middle: float) -> tuple[Array, Arra
     """Return the derivatives of PARTS at a gear by motions (4, 3) along x, y, z of a pinion and by its tilts
     (4, 2) about x and y.
     """
-    axes = layout.axes(gear)
+    axes = _axes(layout, gear)
     to_mesh = axes.basis.T @ to_mesh_frame(layout.gears[gear].sign)
     by_shift, by_turn = _parts(axes, middle)
     return by_shift @ to_mesh, by_turn @ to_mesh[:, :2]
@@ -204,7 +211,7 @@ def _gear_parts(layout: Layout, pinion: int, gear: int, middle: float) -> tuple[
     """Return the derivatives of PARTS of a mesh by motions (4, 3) along x, y, z of its gear and by tilts
     (4, 2) of the gear about x and y.
     """
-    axes, at = layout.axes(gear), layout.angles[pinion]
+    axes, at = _axes(layout, gear), layout.angles[pinion]
     cosine, sine = np.cos(at), np.sin(at)
     to_mesh = to_mesh_frame(layout.gears[gear].sign) @ np.array(
         [[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]]
