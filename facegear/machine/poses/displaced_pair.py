@@ -201,7 +201,8 @@ class DisplacedFlank:
     outward
         Shift of the pinion along its axis, away from the gears' axis.
     path
-        Place of the contact along the pinion's axis, as `ConjugateContact.path`.
+        Place of the contact along the pinion's axis, as `ConjugateContact.path`, counted where the pinion
+        was assembled.
     slope
         Slope of the common normal (the pressure angle there); NaN where the contact was searched.
     approach
@@ -285,10 +286,11 @@ def displaced_flanks(
     flanks = {}
     for number, (flank, pair) in enumerate(zip(FLANKS, posed_pairs, strict=True)):
         (error, path, slope), ends = contacts[number], PairNumbers.of_design(pair)
+        along = pair.assembly.pinion_axial - nominal.pinion_axial
         flanks[flank] = DisplacedFlank(
             design=pair,
             outward=pose.outward,
-            path=path,
+            path=path + along,
             slope=slope,
             approach=error - rest[number],
             deflection=_first_order(assembled_design, turns, SIDES[number]),
