@@ -206,6 +206,29 @@ def test_rating_of_each_flank_is_that_of_the_other_flank_of_the_other_hand(hands
     assert abs(flanks[0] / flanks[1] - 1.0) > 0.005  # each has a stress ratio of its own
 
 
+def test_rating_of_tapered_teeth_goes_to_that_of_spur_teeth_in_proportion():
+    """Stress, what is allowed and safety of both gears by finite elements, on a narrow face."""
+    section = public_section("P2")
+    section["shaper"] = section["shaper"] | {"tip_rounding_modules": 0.1}
+    section["face_gear"] = section["face_gear"] | {"outer_radius_mm": 262}
+    section["pinion"] = section["pinion"] | {"width_mm": 12, "middle_mm": 257.5}
+    sector = {"sector": {"pinion_teeth": 5, "face_gear_teeth": 5}}
+    contact = COARSE["contact"] | sector | {"torques_n_m": [300], "root_stress": True}
+    strength = STRENGTH | {"load_factors": "given", "pinion": BODY_STRENGTH | {"both_ways": True}}
+    strength["duty"] = [{"torque_n_m": 300, "speed_rpm": 6000, "hours": 100}]
+    values = {"case": "kind", "contact": contact, "strength": strength}
+    values["mesh"] = {"resolution": FINE_FILLETS | {"width_mm": 6}}
+    numbers = []
+    for taper in (0.0, 1e-4, 1e-3):
+        teeth = {"tooth_pair": section | {"taper_angle_deg": taper}}
+        table = facegear.load(values | teeth, results=None).rating().table()
+        rows = table[table["method"].isin(["finite elements", "contact analysis"])]
+        numbers.append(rows[["stress_mpa", "allowed_mpa", "safety"]].to_numpy())
+    small, large = (np.abs(each / numbers[0] - 1.0) for each in numbers[1:])
+    assert (large < 1e-4).all() and large.max() > 1e-5
+    np.testing.assert_allclose(small, 0.1 * large, rtol=1e-2, atol=1e-11)
+
+
 OIL = {"oil": "polyol_ester_5_cst", "supply_temperature_c": 100, "pinion": {"ra_um": 0.3}}
 OIL |= {
     "face_gear": {"ra_um": 0.3},
