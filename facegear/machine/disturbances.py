@@ -354,4 +354,4 @@ def _wrenches(layout: Layout, side: float) -> list[FrictionWrench]:
         5: (zero, np.array([side * arm, 0.0, 0.0])),
         6: (zero, side * arm * across),
     }
-    return [FrictionWrench(part, point, *known) for part, known in forces_and_moments.items()]
+    return [FrictionWrench(part, point, *vectors) for part, vectors in forces_and_moments.items()]
