@@ -10,6 +10,7 @@ from family_pairs import public_pair
 from public_teeth import NAMES
 
 from facegear.contact.analysis import contact_analysis
+from facegear.contact.bodies import compliance
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.gear_flank import (
     BUILDERS,
@@ -124,6 +125,22 @@ def test_teeth_need_a_pair_of_bodies_for_each_flank_that_is_no_mirror_image(name
     assert len(nominal_pairs(design)) == count
     assert len(nominal_pairs(pair_design())) == 1
     assert nominal_pairs(mirror_design(design), UPPER)[0] == nominal_pairs(design, UPPER)[-1]
+
+
+def test_a_helical_pinion_s_coast_flank_takes_the_compliance_of_its_drive_flank(monkeypatch):
+    """Without taper one is the other in a mirror across the face; it was condensed a second time."""
+    design, plan = public_pair("P1"), replace(PLAN, root_stress=True)
+    expected = [gear_flank(pair, "pinion", SIZES, STEEL, plan) for pair in nominal_pairs(design, UPPER)]
+    count = []
+    condense = compliance.condense
+    monkeypatch.setattr(compliance, "condense", lambda *of: count.append(0) or condense(*of))
+    found = gear_flanks(design, "pinion", SIZES, STEEL, plan, UPPER)
+    assert len(count) == 1
+    for flank, alone in zip(found, expected, strict=True):
+        for field in ("loaded_tooth", "neighbour_blocks", "readings"):
+            values, wanted = (getattr(of.compliance, field) for of in (flank, alone))
+            np.testing.assert_allclose(values, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+        np.testing.assert_allclose(flank.gauges.error, alone.gauges.error, rtol=1e-9)
 
 
 SMALL = {
