@@ -179,7 +179,7 @@ def test_steady_states_have_forces_by_place_and_balance_the_torques():
     assert np.abs(forces - at_even_places).max() > 1e-4 * np.abs(forces).max()
 
 
-def test_a_config_asks_for_has_phase_shifts_and_refuses_what_they_cannot_have(tmp_path):
+def test_a_config_asks_for_moving_places_and_refuses_what_they_cannot_have(tmp_path):
     pair = {"tooth_pair.helix_angle_deg": 15.0, "transmission.pinion.bearing_stiffness_n_per_m.z": 2e8}
     moving = {
         "transmission.mesh_kinematics": "geometric",
@@ -197,6 +197,12 @@ def test_a_config_asks_for_has_phase_shifts_and_refuses_what_they_cannot_have(tm
     assert 1e-6 < changed < 0.2
     with pytest.raises(FacegearError, match=r"mesh_place = \"moving\": must be even where mesh_k"):
         base.with_values({"transmission.mesh_place": "moving"})
+    with pytest.raises(
+        FacegearError, match=r"mesh_place = .*even, where lubrication\.friction\.effect is exc"
+    ):
+        facegear.load("config/friction.yaml").with_values(
+            {"transmission.mesh_place": "moving", "lubrication.friction.effect": "excitation"}
+        )
     machine = make_floating_machine(KINDS["helical"], True)
     with pytest.raises(InvalidInput, match="even, where an FMU is written"):
         write_fmu(tmp_path / "machine.fmu", machine, 7000.0)
