@@ -6,13 +6,17 @@ from math import pi, radians
 
 import numpy as np
 import pytest
+from public_casing import mount_public
+from rolling_machines import S1, machine_on, public_layout
 from scipy_motions import kicked
-from wrench_machines import Teeth, common_rotation, flank_rows, make_layout, random_shaft, solved
+from seated_machines import make_small_machine, place_on
+from wrench_machines import Teeth, flank_rows, make_layout, random_shaft, solved
 
 import facegear
 from facegear.build.machine_layout import wired_layout
 from facegear.build.tooth_numbers import machine_teeth
 from facegear.harmonics import Harmonics
+from facegear.machine.disturbances import rigid_rotation
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC
@@ -37,7 +41,7 @@ def make_near(smallness: float) -> Teeth:
 
 
 @cache
-def make_machine(smallness: float) -> Machine:
+def make_machine(smallness: float, moving: bool = False) -> Machine:
     """Two pinions on shafts that bend between two gears that tilt; 0 is the machine with spur teeth."""
     shaft = random_shaft(np.random.default_rng(12))
     across = np.linalg.inv(shaft.compliance[:2, :2])
@@ -62,12 +66,13 @@ def make_machine(smallness: float) -> Machine:
         damping=Damping(800.0, 300.0, 1e-6, OpenFlanks.CONTACT_ONLY),
         imperfections=perfect(layout),
         drive_line=DriveLine(layout, seats, {}),
+        has_phase_shifts=moving,
     )
 
 
 def without_common_rotation(machine: Machine, moved: np.ndarray) -> np.ndarray:
     """Motions of all coordinates as lengths, without the rotation that nothing resists."""
-    rotation = common_rotation(machine)
+    rotation = rigid_rotation(machine.layout, machine.linear, machine.drive_line)
     return (moved - rotation * (rotation @ moved) / (rotation @ rotation)) * machine.linear.lengths
 
 
@@ -101,10 +106,18 @@ def test_a_config_with_a_face_says_where_spur_pinions_stand():
     assert bare.pinion_middle == bare.mesh_radius and not bare.meshes_tilt_pinions
 
 
-@pytest.mark.parametrize("answer", [placed_at_rest, squared_frequencies, moved_after_a_period])
-def test_answers_of_nearly_spur_machines_differ_in_proportion(answer):
-    spur = answer(make_machine(0.0))
-    apart = [(answer(make_machine(small)) - spur) / small for small in SMALL]
+@pytest.mark.parametrize(
+    ("answer", "moving"),
+    [
+        (placed_at_rest, False),
+        (squared_frequencies, False),
+        (moved_after_a_period, False),
+        (moved_after_a_period, True),
+    ],
+)
+def test_answers_of_nearly_spur_machines_differ_in_proportion(answer, moving):
+    spur = answer(make_machine(0.0, moving))
+    apart = [(answer(make_machine(small, moving)) - spur) / small for small in SMALL]
     size = np.abs(apart[1]).max()
     assert size > 1e-3 * np.abs(spur).max()
     assert np.abs(apart[0] - apart[1]).max() < 0.02 * size
@@ -133,3 +146,36 @@ def test_spur_machines_with_tilts_stand_as_the_independent_model_says():
     found = mean_equilibrium(machine)
     np.testing.assert_allclose(machine.linear.rows, flank_rows(machine, SPUR), rtol=0.0, atol=1e-14)
     assert np.abs(found.flank_forces[0] - forces).max() < 1e-9 * forces.max()
+
+
+def on_rolling_bearings(layout: Layout) -> np.ndarray:
+    machine = machine_on({0: S1, 2: S1}, layout=layout, tilt_inertias={0: 1.5e-3, 2: 1.5e-3})
+    return without_common_rotation(machine, mean_equilibrium(machine).displacements[0])
+
+
+def on_a_casing(layout: Layout) -> np.ndarray:
+    machine = make_small_machine(layout, place_on(mount_public(0), layout))
+    moved = mean_equilibrium(machine).displacements[0]
+    return without_common_rotation(machine, moved)
+
+
+SMALL_TEETH = Teeth(20, 60, 3e-3, (ANGLE, ANGLE), middle=0.085)
+
+
+@pytest.mark.parametrize("answer", [on_rolling_bearings, on_a_casing])
+def test_nearly_spur_pinions_on_rolling_bearings_and_casings_stand_in_proportion(answer):
+    spur = replace(public_layout(), middle=SMALL_TEETH.middle)
+
+    def apart_from_spur(small: float) -> np.ndarray:
+        angles = ANGLE, ANGLE + small
+        teeth = replace(
+            SMALL_TEETH, angles=angles, helix=small, taper=small, shaft=pi / 2 + small, offset=small
+        )
+        return (answer(make_layout(teeth, spur.pinions, spur.gears)) - answer(spur)) / small
+
+    apart = [apart_from_spur(small) for small in SMALL]
+    size = np.abs(apart[1]).max()
+    assert np.abs(apart[0] - apart[1]).max() < 0.02 * size
+    assert np.abs(apart[2] - apart[1]).max() < 0.02 * size
+    at_meshes = answer(public_layout())
+    assert np.abs(answer(spur) - at_meshes).max() > 1e-3 * np.abs(at_meshes).max()

@@ -179,7 +179,23 @@ def test_steady_states_have_forces_by_place_and_balance_the_torques():
     assert np.abs(forces - at_even_places).max() > 1e-4 * np.abs(forces).max()
 
 
-def test_a_config_asks_for_has_phase_shifts_and_refuses_what_they_cannot_have(tmp_path):
+def test_sizes_of_shift_and_reaction_are_those_of_the_page():
+    model = model_of("helical")
+    system, machine = model.system, model.machine
+    even, response = (simulate(each, 5040.0) for each in (model_of("helical", moving=False), model))
+    moved = response.coordinates
+    shifts = moved @ system.phase_shifts.T
+    assert 0.002 < np.abs(shifts).max() / TAU < 0.01
+    over = np.maximum(moved @ system.mesh_jacobian.T - system.upper, 0.0)
+    cycles = np.arange(len(moved)) / response.per_period
+    force, reaction = (system.law.energy(cycles, over, shifts, orders) for orders in ((1, 0), (0, 1)))
+    axial = np.abs(force @ machine.linear.rows[:8, 2]).max()
+    assert 1e-3 < np.abs(reaction @ machine.phase_rows[:, 2]).max() / axial < 3e-3
+    changed = np.abs(response.forces.std(axis=0) / even.forces.std(axis=0) - 1.0)
+    assert 0.02 < changed.max() < 0.05
+
+
+def test_a_config_asks_for_moving_places_and_refuses_what_they_cannot_have(tmp_path):
     pair = {"tooth_pair.helix_angle_deg": 15.0, "transmission.pinion.bearing_stiffness_n_per_m.z": 2e8}
     moving = {
         "transmission.mesh_kinematics": "geometric",
@@ -197,13 +213,19 @@ def test_a_config_asks_for_has_phase_shifts_and_refuses_what_they_cannot_have(tm
     assert 1e-6 < changed < 0.2
     with pytest.raises(FacegearError, match=r"mesh_place = \"moving\": must be even where mesh_k"):
         base.with_values({"transmission.mesh_place": "moving"})
+    with pytest.raises(
+        FacegearError, match=r"mesh_place = .*even, where lubrication\.friction\.effect is exc"
+    ):
+        facegear.load("config/friction.yaml").with_values(
+            {"transmission.mesh_place": "moving", "lubrication.friction.effect": "excitation"}
+        )
     machine = make_floating_machine(KINDS["helical"], True)
     with pytest.raises(InvalidInput, match="even, where an FMU is written"):
         write_fmu(tmp_path / "machine.fmu", machine, 7000.0)
     assert not list(tmp_path.iterdir())
 
 
-def test_laws_that_jump_in_the_mesh_cycle_have_no_has_phase_shifts():
+def test_laws_that_jump_in_the_mesh_cycle_have_no_moving_places():
     piece = Piecewise(np.array([0.0, 0.4, 1.0]), np.array([[1e7], [0.0]]))
     law = LinearLaw(np.full((1, 2, 1), 4e8), np.zeros(2, dtype=int), (piece,))
     with pytest.raises(InvalidInput, match="fixed, where the stiffness jumps"):
