@@ -54,6 +54,28 @@ class Rings:
 
 
 @dataclass(frozen=True, eq=False)
+class CondensedCasing:
+    """A casing whose slow motions alone are coordinates, by the first k coordinates of a model.
+
+    Attributes
+    ----------
+    stiffness, dampers : (b, k) array
+        Loads on the bearings of the first b coordinates, those of bodies, by displacements and by velocities,
+        SI units. The model's own matrices hold what moves the casing with the bodies, too.
+    casing : (c, k) array
+        Motions of all seats, feet and modes of the casing, m and rad.
+    rest : (c,) array
+        The constant part of these motions that no coordinate has, m and rad: what constant loads on seats do,
+        which tangents of rolling bearings have.
+    """
+
+    stiffness: Array
+    dampers: Array
+    casing: Array
+    rest: Array
+
+
+@dataclass(frozen=True, eq=False)
 class LinearModel:
     """n coordinates; m flanks; SI units.
 
@@ -91,6 +113,9 @@ class LinearModel:
     seat_tilts : (bodies, 2, k)
         Tilts about x and y of bodies that have no such coordinates, by the first k coordinates, rad: those
         with their seats on a casing; None without one.
+    condensed_casing : CondensedCasing
+        What a casing does that follows the bodies but for its slow motions; None where all of its motions are
+        coordinates, and without one.
     """
 
     labels: tuple[str, ...]
@@ -109,6 +134,7 @@ class LinearModel:
     slopes: Array | None = field(default=None)
     tangent_loads: Array | None = field(default=None)
     seat_tilts: Array | None = field(default=None)
+    condensed_casing: CondensedCasing | None = field(default=None)
 
     @property
     def size(self) -> int:
@@ -204,6 +230,25 @@ class LinearModel:
             slopes[:, :, : self.size] = self.slopes
         slopes[:, meshes, self.size :] = added_slopes
         return slopes
+
+    def bearing_rows(self, coordinates: Integers) -> tuple[Array, Array]:
+        """Return the derivatives of the loads of bodies on their bearings.
+
+        Parameters
+        ----------
+        coordinates : (r,) array of int
+            Indices of coordinates of bodies along which the loads act.
+
+        Returns
+        -------
+        tuple of two (r, n) arrays
+            By displacements, N/m, and of dampers by velocities, N s/m; the share of `bearing_damping` is left
+            out.
+        """
+        if self.condensed_casing is None:
+            return self.stiffness[coordinates], self.dampers[coordinates]
+        stiffness, dampers = self.condensed_casing.stiffness, self.condensed_casing.dampers
+        return self.over_all(stiffness[coordinates]), self.over_all(dampers[coordinates])
 
     def of_body(self, name: str) -> Integers:
         """Return the indices of the coordinates that belong to a body, those of tilts and elastic waves

@@ -13,6 +13,7 @@ from facegear.by_content import kept_by_content
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
 from facegear.machine.casing import Casing
+from facegear.machine.casing_coordinates import keep_slow_motions
 from facegear.machine.disturbances import (
     Excitation,
     MeshFriction,
@@ -182,18 +183,31 @@ class Machine:
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Linear model of the whole machine, the tangents of its rolling bearings included."""
-        return add_tangents(self.linear_without_rolling, self.drive_line, self.casing)
+        """Linear model of the whole machine, the tangents of its rolling bearings included; of a casing with
+        a frequency limit the slow motions alone are coordinates.
+        """
+        casing, line = self.casing, self.drive_line
+        if casing is None or casing.frequency_limit is None:
+            return add_tangents(self.linear_without_rolling, line, casing)
+        seated = add_tangents(self._seated_model, line, casing)
+        return self._with_bodies(keep_slow_motions(seated, casing.frequency_limit))
 
     @cached_property
     def linear_without_rolling(self) -> LinearModel:
         """Linear model without rolling bearings: `lumped_model`, extended by the drive line, then by the
-        casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates
-        are the layout's.
+        casing with all of its coordinates, then by `bodies` (gears that bend), then by `directions`, each if
+        given. Its first coordinates are the layout's.
         """
+        return self._with_bodies(self._seated_model)
+
+    @cached_property
+    def _seated_model(self) -> LinearModel:
+        """Linear model of the layout with drive line and casing."""
         model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
-        if self.casing is not None:
-            model = self.casing(model, self.drive_line)
+        return model if self.casing is None else self.casing(model, self.drive_line)
+
+    def _with_bodies(self, model: LinearModel) -> LinearModel:
+        """Return a model extended by `bodies` and `directions`."""
         for add_part in (self.bodies, self.directions):
             model = model if add_part is None else add_part(model)
         return model
@@ -309,9 +323,9 @@ class Machine:
         """Directions (rows, n) of all forces that excite motion beside those of the flanks.
 
         First the external forces, normalised; then one row for each mesh and each part of friction
-        (`disturbances.parts_of`), where there is friction; then the normalised `phase_rows`, where phases shift;
-        then one normalised row for each periodic torque, without its rigid rotation. Rows that are zero are
-        left out, except those of friction.
+        (`disturbances.parts_of`), where there is friction; then the normalised `phase_rows`, where phases
+        shift; then one normalised row for each periodic torque, without its rigid rotation. Rows that are zero
+        are left out, except those of friction.
         """
         linear = self.linear
         pushes = [np.zeros((0, linear.size))]

@@ -335,7 +335,8 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         If forces and moments stay out of balance at a position.
     """
     law_at_positions, gaps = law.statics_law(cycles), errors + np.tile(machine.half_backlash, 2)
-    if has_rolling_bearings(machine.drive_line):
+    in_motion = machine.casing is not None and machine.casing.frequency_limit is not None
+    if has_rolling_bearings(machine.drive_line) and not in_motion:
         return _settle_shafts(machine, law, cycles, gaps, law_at_positions.stiffness, names)
     blocks = static_blocks(machine.static_machine)
     if blocks is not None and has_kernel(law_at_positions):

@@ -131,9 +131,9 @@ def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Inte
     Displacement @ first + velocity @ second gives the force (N) or moment (N m) along each of the given
     coordinates of the linear model.
     """
-    basis = reduction.basis
-    springs = basis.T @ linear.stiffness[:, coordinates]
-    return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
+    stiffness, dampers = linear.bearing_rows(coordinates)
+    springs = reduction.basis.T @ stiffness.T
+    return springs, linear.bearing_damping * springs + reduction.basis.T @ dampers.T
 
 
 def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
