@@ -324,8 +324,8 @@ class Machine:
 
         First the external forces, normalised; then one row for each mesh and each part of friction
         (`disturbances.parts_of`), where there is friction; then the normalised `phase_rows`, where phases
-        shift; then one normalised row for each periodic torque, without its rigid rotation. Rows that are zero
-        are left out, except those of friction.
+        shift; then one normalised row for each periodic torque, without its rigid rotation. Rows that are
+        zero are left out, except those of friction.
         """
         linear = self.linear
         pushes = [np.zeros((0, linear.size))]
