@@ -47,7 +47,7 @@ from facegear.schema.contact import Contact
 from facegear.strength.passage import passing
 from facegear.strength.root_stress import largest_tension
 from facegear.teeth.conjugate import PairNumbers, contact_at, without_modifications
-from facegear.teeth.design import PairDesign
+from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import FLANKS, GEARS, nominal_teeth, pair_at
 
 
@@ -97,7 +97,7 @@ def pose_surface(
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
     flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
-    pairs, numbers = surface_pairs(teeth.design, gears_of(teeth.design, flanks))
+    pairs, numbers = surface_pairs(teeth.design, gears_of(teeth.design, flanks), tilting)
     surfaces, nodes, errors = [], [], []
     for design in pairs.values():
         flank_surface, offsets = _solve_surface(teeth, design, flanks, plan, torque_n_m, tilting)
@@ -124,7 +124,7 @@ def pose_surface(
 
 
 def surface_pairs(
-    design: PairDesign, gears: Sequence[str]
+    design: PairDesign, gears: Sequence[str], tilting: bool = True
 ) -> tuple[dict[tuple[str, str], PairDesign], tuple[tuple[int, int], ...]]:
     """Return the pairs that have a pose surface of their own, and which of them each flank belongs to.
 
@@ -134,6 +134,9 @@ def surface_pairs(
         Pair of gears.
     gears : Sequence[str]
         Gears that there are, of `upper` and `lower`; a missing one has the surfaces of the other.
+    tilting : bool
+        Whether bodies may tilt. Else a surface has the error of the shaft angle of its own gear alone, which
+        the lower gear meets with the other sign.
 
     Returns
     -------
@@ -149,6 +152,9 @@ def surface_pairs(
         for flank in FLANKS:
             pair_of_flank = pair_at(design, present, flank)
             teeth = nominal_teeth(pair_of_flank)
+            if not tilting:
+                errors = AssemblyErrors(shaft_angle_error=pair_of_flank.assembly.shaft_angle_error)
+                teeth = replace(teeth, assembly=errors)
             if teeth not in number_of_teeth:
                 number_of_teeth[teeth] = len(pairs)
                 pairs[present, flank] = pair_of_flank

@@ -262,3 +262,12 @@ def test_an_answer_of_the_door_is_the_fixed_point_and_its_surface_is_near_contac
     check = answer.check().set_index("quantity")["surface_error_percent"].abs()
     assert check[STIFFNESS] < 1.0 and check["pressure_pa"] < 2.0 and check[RADIUS] < 0.05
     assert facegear.example().values["transmission"]["operating_pose"] == "none"
+
+
+def test_a_lower_gear_meets_an_error_of_the_shaft_angle_from_the_other_side():
+    """Its surface was that of the upper gear, at whose angle alone contact was solved: it was refused."""
+    changes = {"transmission.operating_pose": "static", "tooth_pair.assembly.shaft_angle_error_deg": 0.01}
+    gearbox = facegear.example().with_values(changes)
+    table = gearbox.operating_pose().table().set_index("mesh")
+    for mesh, angle in table["shaft_angle_error_deg"].items():
+        assert angle == pytest.approx(0.01 if mesh.endswith("upper") else -0.01)
