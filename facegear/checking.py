@@ -8,7 +8,7 @@ from typing import Any
 from facegear.build.cases import expand_cases
 from facegear.build.config import Config
 from facegear.build.early_checks import EarlyFindings, machine_findings, pair_findings
-from facegear.build.kinds_of_teeth import refused_keys, refused_moves, refusing_names
+from facegear.build.kinds_of_teeth import refused_keys, refused_moves
 from facegear.build.notes import notes
 from facegear.pipeline.needs import idle_keys, stages_before
 from facegear.pipeline.stage import Case
@@ -98,7 +98,7 @@ def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, An
     case = Case(values, cases)
     wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
     names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])
-    kind_errors = refused_keys(refusing_names(names, values), values["tooth_pair"])
+    kind_errors = refused_keys(names, values["tooth_pair"])
     errors = [*kind_errors.values(), *refused_moves(names, values)]
     return [str(error) for error in errors]
 

@@ -28,6 +28,7 @@ LINES: tuple[tuple[str, str, int], ...] = (
     ("pressure_mpa", "largest pressure, MPa", 0),
     ("pinion_root_mpa", "root stress of the pinion, MPa", 0),
     ("gear_root_mpa", "root stress of the gear, MPa", 0),
+    ("loss_percent", "loss of a mesh, %", 3),
     ("axial_input_n", "axial force of an input, N, + outwards", 0),
     ("axial_idler_n", "axial force of the idler, N", 0),
     ("k_gamma_inputs", "K_gamma of inputs", 2),
@@ -72,6 +73,16 @@ PAIR: dict[str, Any] = {
     },
     "shaper": {"teeth": 27, "tip_rounding_modules": 0.1},
 }
+OIL: dict[str, Any] = {
+    "oil": "polyol_ester_5_cst",
+    "supply_temperature_c": 100,
+    "pinion": {"ra_um": 0.3},
+    "face_gear": {"ra_um": 0.3},
+    "bulk": {"source": "given", "temperature_c": 110},
+}
+"""Section `lubrication`; friction by Schlenk's model."""
+SPEED = 6000.0
+"""Speed of the pinions, rpm."""
 MACHINE: dict[str, Any] = {
     "pinions": [
         {"name": "engine A", "role": "input", "angle_deg": 0},
@@ -174,6 +185,26 @@ def loaded_values(pair: Gearbox) -> dict[str, float]:
     }
 
 
+def friction_values(pair: Gearbox) -> dict[str, float]:
+    """Return what the friction of a mesh takes.
+
+    Parameters
+    ----------
+    pair : Gearbox
+        A pair without a machine.
+
+    Returns
+    -------
+    dict of str to float
+        Loss in percent of the power, and the largest flash temperature, K.
+    """
+    table = pair.with_values({"lubrication": OIL}).friction(speed_rpm=SPEED).table().iloc[0]
+    return {
+        "loss_percent": 100.0 * (1.0 - float(table["efficiency"])),
+        "flash_k": float(table["largest_flash_k"]),
+    }
+
+
 def backlash(pair: Gearbox) -> float:
     """Return the smallest backlash of an unloaded pair, um along the normal.
 
@@ -248,7 +279,7 @@ def machine_values(kind: str) -> dict[str, float]:
         },
         "mesh_stiffness": {"torque_n_m": TORQUE, "harmonics_kept": 3},
         "transmission": MACHINE,
-        "dynamics": {"speed_rpm": 6000},
+        "dynamics": {"speed_rpm": SPEED},
     }
     hunting = load(config, results=None).hunting()
     axial = hunting.bearings().set_index("body")["mean_z_n"]
@@ -273,11 +304,13 @@ def teeth_row(kind: str) -> dict[str, Any]:
         Values by column; `finer_` ones are from the finer mesh.
     """
     pair = pair_alone(kind)
-    finer = loaded_values(pair_alone(kind, FINER))
+    finer_pair = pair_alone(kind, FINER)
+    finer = {**loaded_values(finer_pair), **friction_values(finer_pair)}
     return {
         "teeth": kind,
         "contact_ratio": float(pair.geometry().content["pair"]["contact_ratio"]),
         **loaded_values(pair),
+        **friction_values(pair),
         **{f"finer_{name}": value for name, value in finer.items()},
         **machine_values(kind),
         **error_values(pair),

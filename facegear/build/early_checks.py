@@ -168,15 +168,16 @@ def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], l
 
     A failure is the error by which the rating would end. Remarks tell of a notch parameter q_s of the
     pinion's fillet outside NOTCHES, the range of ISO 6336-3, below either flank, and of teeth that the
-    standard does not know. Both are empty without section `strength`.
+    standard does not know. Both are empty without the teeth's part of section `strength`.
     """
-    if values["strength"] is None or refused_keys(["rating"], values["tooth_pair"]):
+    section = values["strength"]
+    if section is None or section["pinion"] is None or refused_keys(["rating"], values["tooth_pair"]):
         return [], []
     missing_kinds, remarks = unknown_to_standard(design), []
     try:
         notches = [pinion_notch(pair_at(design, GEARS[0], flank)) for flank in FLANKS]
         if not missing_kinds:
-            request = rating_request(Strength.of_config(values["strength"]), design)
+            request = rating_request(Strength.of_config(section), design)
             hertz_stress(design, transverse_contact_ratio(design), request)
     except FacegearError as error:
         text = str(error)

@@ -27,36 +27,9 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
-    "posed_stress": ALL_KINDS,
-    "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
-    **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
-    **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
-    **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
+    "sharing_map": ALL_KINDS,
 }
-"""Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""
-
-
-def refusing_names(stages: Iterable[str], values: Mapping[str, Any]) -> list[str]:
-    """Return the names by which SPUR_ONLY knows stages, with friction that disturbs the motion of a machine.
-
-    Parameters
-    ----------
-    stages : iterable of str
-        Names of stages.
-    values : mapping
-        Plain values of a whole config.
-
-    Returns
-    -------
-    list of str
-        The names of the stages, and `friction_in_motion` where they include friction with that effect.
-    """
-    names = list(stages)
-    has_both = values["lubrication"] and values["transmission"]
-    if "lubrication" in names and has_both and values["lubrication"]["friction"]["effect"] == "excitation":
-        names.append("friction_in_motion")
-    return names
+"""Keys of section `tooth_pair` that a stage cannot take yet, by its name."""
 
 
 def refused_keys(names: Iterable[str], pair: Mapping[str, Any]) -> dict[str, ConfigError]:

@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import pandas as pd
 
-from facegear.arrays import Arrays
+from facegear.arrays import Arrays, Integers
 from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.hertz import contact_modulus
+from facegear.contact.pattern import pressure_of_flanks
 from facegear.lubrication import friction
 from facegear.lubrication.contact_points import LoadedContact, contact_points, loaded_contacts, stored_lines
 from facegear.lubrication.loss import hat_slip
@@ -14,6 +15,8 @@ from facegear.lubrication.oil import FixedCoefficient, Oil, PolyolEster, PowerOf
 from facegear.lubrication.request import BorrowedBulk, Cooling, FlankMaterial, GivenBulk, Limits, Lubrication
 from facegear.schema.cards import EsterLaw, FixedLaw, OilCard, PowerLaw
 from facegear.schema.lubrication import RQ_PER_RA, SUPPLY_FACTORS, FrictionSection, LubricationSection
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import distinct_pairs
 
 
 def oil_of(card: OilCard) -> Oil:
@@ -50,14 +53,15 @@ def _law(section: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEs
     return FixedCoefficient(1e-9 * section.per_gpa) if isinstance(section, FixedLaw) else PolyolEster()
 
 
-def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tuple[LoadedContact, ...]:
-    """Return the loaded contact of a pair, with pressure, sliding and radii at its points, torque by
-    torque.
+def contacts_of(
+    ltca: pd.DataFrame, pressure: Arrays, section: ToothPair
+) -> tuple[list[tuple[LoadedContact, ...]], Integers]:
+    """Return the loaded contacts of the flanks of a pair, with pressure, sliding and radii at their points.
 
     Parameters
     ----------
     ltca : pd.DataFrame
-        Table `ltca` of stage contact, of which position (pitches) and unloaded_ste_um are taken.
+        Table `ltca` of stage contact; columns position (pitches) and unloaded_ste_um are taken.
     pressure : Arrays
         Arrays `pressure` of stage contact.
     section : ToothPair
@@ -65,19 +69,47 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
 
     Returns
     -------
-    tuple[LoadedContact, ...]
-        One contact for each torque of the analysis, rising.
+    list of tuple of LoadedContact
+        For each contact, that of the upper gear's drive flank first, one for each torque of the analysis,
+        rising.
+    (2, 2) array of int
+        Number of the contact of each gear (upper, lower) and flank (drive, back).
 
     Raises
     ------
     ConfigError
         For a section without bodies.
     """
-    design = pair_design(section)
+    arrays, numbers = pressure_of_flanks(pressure)
     unloaded_error = dict(zip(ltca["position"], 1e-6 * ltca["unloaded_ste_um"], strict=True))
-    lines = stored_lines(design, pressure, unloaded_error)
-    contact_places = contact_points(design, pressure, lines, contact_modulus(materials(section)))
-    return loaded_contacts(contact_places, hat_slip(design, pressure))
+    contacts = []
+    for contact_arrays, design in zip(arrays, designs_of_contacts(section, len(arrays)), strict=True):
+        if contacts:
+            unloaded_error = dict(
+                zip(contact_arrays["contact_position"], contact_arrays["unloaded_m"], strict=True)
+            )
+        lines = stored_lines(design, contact_arrays, unloaded_error)
+        contact_places = contact_points(design, contact_arrays, lines, contact_modulus(materials(section)))
+        contacts.append(loaded_contacts(contact_places, hat_slip(design, contact_arrays)))
+    return contacts, numbers
+
+
+def designs_of_contacts(section: ToothPair, count: int) -> list[PairDesign]:
+    """Return the pairs whose drive flanks the stored contacts belong to.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+    count : int
+        Number of stored contacts.
+
+    Returns
+    -------
+    list of PairDesign
+        As `distinct_pairs` orders them, that of the upper gear's drive flank first.
+    """
+    return distinct_pairs(pair_design(section))[0][:count]
 
 
 def lubrication_of(section: LubricationSection, teeth: ToothPair) -> Lubrication:

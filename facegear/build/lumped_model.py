@@ -205,6 +205,7 @@ def machine(
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
     casing: Arrays | None = None,
+    flank_stiffness: tuple[tuple[Harmonics, Harmonics], ...] | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -228,6 +229,8 @@ def machine(
         that is stiffness times compression.
     casing : mapping of arrays or None
         Arrays of stage casing; None to reduce the casing of the section here, where it has one.
+    flank_stiffness : tuple of pairs of Harmonics, or None
+        Stiffness of drive and back flank at each gear, N/m; None where all are `stiffness`.
 
     Returns
     -------
@@ -258,6 +261,8 @@ def machine(
         casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
+        flank_stiffness=flank_stiffness,
+        has_phase_shifts=section.mesh_place == "moving",
     )
 
 
@@ -417,8 +422,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
     """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
 
-    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
-    half of that about its axis, as a thin disc.
+    A pinion whose teeth are not spur teeth at right angles tilts in any case. If its inertia is not given,
+    it has half of that about its axis, as a thin disc.
     """
     if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
         return 0.5 * shape.pinions[pinion].body.inertia

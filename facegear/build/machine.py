@@ -14,7 +14,7 @@ from facegear.build.lumped_model import machine
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigError
 from facegear.harmonics import Harmonics, fit_harmonics, stack_series
-from facegear.lubrication.columns import EXCITATION_COLUMNS
+from facegear.lubrication.columns import EXCITATION_COLUMNS, EXCITATION_FLANK, EXCITATION_TILTS
 from facegear.machine.disturbances import MeshFriction
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.imperfections import from_arrays
@@ -29,7 +29,7 @@ from facegear.meshing import stiffness_source
 from facegear.meshing.force_table import ForceTable
 from facegear.parts.reduced_body import ReducedBody
 from facegear.schema.transmission import Transmission
-from facegear.teeth.placement import GEARS
+from facegear.teeth.placement import FLANKS, GEARS
 
 TablesOf = Callable[[Layout], tuple[FlankTables, ...]]
 """Tables of the flanks at each gear of a machine."""
@@ -110,7 +110,8 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
         The lumped machine.
     table : pd.DataFrame
         Table `excitation` of stage lubrication: columns torque_n_m and position (pitches), then friction
-        over mesh force: three force components, and lever arms on pinion and gear (mm).
+        over mesh force: three force components, and lever arms on pinion and gear (mm); for teeth other
+        than spur ones also those that tilt the pinion, with rows for each flank of each gear.
 
     Returns
     -------
@@ -122,33 +123,65 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     NotConverged
         If the machine has no static equilibrium.
     """
-    torques = np.abs(machine.layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
-    table_torques, ratios = _ratios(table)
-    ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
-    ratios[..., 4] /= 1e3 * machine.layout.gear_arm
-    return replace(
-        machine,
-        friction=MeshFriction(np.stack([_series(table_torques, ratios, torque) for torque in torques])),
+    layout = machine.layout
+    torques = np.abs(layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
+    if layout.kind is None:
+        return replace(machine, friction=MeshFriction(_series_of_meshes(table, layout, torques)))
+    of_gears = [GEARS[0] if len(layout.gears) == 1 else layout.gears[g].side.value for _, g in layout.meshes]
+    drive, back = (
+        np.concatenate(
+            [
+                _series_of_meshes(_rows_of_flank(table, gear, flank), layout, np.array([torque]))
+                for gear, torque in zip(of_gears, torques.tolist(), strict=True)
+            ]
+        )
+        for flank in FLANKS
     )
+    return replace(machine, friction=MeshFriction(drive, back))
+
+
+def _rows_of_flank(table: pd.DataFrame, gear: str, flank: str) -> pd.DataFrame:
+    """Return the rows of table `excitation` that belong to a flank of a gear."""
+    gears, flanks = (table[name] for name in EXCITATION_FLANK)
+    return table[(gears == gear) & (flanks == flank)]
+
+
+def _series_of_meshes(table: pd.DataFrame, layout: Layout, torques: Array) -> Array:
+    """Return the Fourier series (n, parts, 2, orders) of friction's parts over elastic force at n torques of
+    meshes, N m, from rows of table `excitation` of one flank.
+    """
+    table_torques, ratios = _ratios(table)
+    for column, name in enumerate(_ratio_names(table)):
+        if name.endswith("_mm"):
+            arm = layout.gear_arm if name.startswith("face_gear") else layout.pinion_arm
+            ratios[..., column] /= 1e3 * arm
+    return np.stack([_series(table_torques, ratios, torque) for torque in torques])
+
+
+def _ratio_names(table: pd.DataFrame) -> list[str]:
+    """Return the columns of table `excitation` after torque and position, with those of tilts where it has
+    them.
+    """
+    return [*EXCITATION_COLUMNS[2:], *(name for name in EXCITATION_TILTS if name in table)]
 
 
 def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
-    """Return the torques (t,) of table `excitation`, N m, rising, and its ratios (t, positions, 5).
+    """Return the torques (t,) of table `excitation`, N m, rising, and its ratios (t, positions, parts).
 
-    The last axis has the columns of EXCITATION_COLUMNS after torque and position: friction over mesh
-    force, as three force components and two lever arms in mm.
+    The last axis has the columns of `_ratio_names`: friction over mesh force, as three force components and
+    lever arms in mm.
     """
-    names = list(EXCITATION_COLUMNS[2:])
+    names = _ratio_names(table)
     by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
     ratios = np.stack([rows[names].to_numpy() for _, rows in by_torque])
     return np.array(list(by_torque.groups), float), ratios
 
 
 def _series(torques: Array, ratios: Array, torque: float) -> Array:
-    """Return the Fourier series (5, 2, orders) of friction's ratios over the mesh cycle at one torque.
+    """Return the Fourier series (parts, 2, orders) of friction's ratios over the mesh cycle at one torque.
 
     The axis of 2 has the sine part first. `torques` (t,) and `torque` are in N m, `ratios` is (t,
-    positions, 5). Ratios are interpolated (PCHIP) over the logarithm of the torque, which is clipped to
+    positions, parts). Ratios are interpolated (PCHIP) over the logarithm of the torque, which is clipped to
     the range of `torques`.
     """
     clipped_torque = np.clip(torque, torques[0], torques[-1])
@@ -290,7 +323,7 @@ class MachineInputs:
             harmonics=harmonics,
         )
 
-    def at_torque(self, torque_n_m: float) -> Self:
+    def at_torque(self, torque_n_m: float, speed_rpm: float | None = None) -> Self:
         """Return the inputs of the machine with all mean torques scaled to another torque of the input
         pinions.
 
@@ -298,13 +331,17 @@ class MachineInputs:
         ----------
         torque_n_m : float
             Torque on an input pinion by each of its meshes, N m.
+        speed_rpm : float or None
+            Speed of the pinions, rpm, for rolling elements that feel centrifugal force; None: that of the
+            inputs.
 
         Returns
         -------
         MachineInputs
             A copy with the torques of `at_mesh_torque`; friction, law and poses stay.
         """
-        return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
+        section = at_mesh_torque(self.transmission, torque_n_m)
+        return replace(self, transmission=section if speed_rpm is None else section.at_speed(speed_rpm))
 
     def build(self) -> Machine:
         """Build the lumped machine from the config, the mesh stiffness and everything else that was
@@ -325,11 +362,15 @@ class MachineInputs:
         """
         if self.harmonics is None:
             raise ValueError("harmonics: a mesh stiffness is needed to build a machine")
-        series, error = self.harmonics, self.unloaded_error
+        series, error, flanks = self.harmonics, self.unloaded_error, None
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
+            gears = [side.value for side in Side if side.value in self.transmission.face_gears]
+            flanks = stiffness_source.flank_series(series, gears)
             series = stiffness_source.series_of(series)
-        lumped_machine = machine(self.transmission, self.teeth, series, error, casing=self.casing)
+        lumped_machine = machine(
+            self.transmission, self.teeth, series, error, casing=self.casing, flank_stiffness=flanks
+        )
         if self.law is not None:
             lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
         if self.bodies is not None:

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from facegear.errors import ConfigError
 from facegear.schema.base import parse
 from facegear.schema.cards import Card, Limits
 from facegear.schema.strength import Strength
@@ -135,8 +136,15 @@ def rating_request(
     RatingRequest
         Material limits and root roughness (m) by `pinion` and `face_gear`, loads of the flanks, duration
         of the duty cycle (s), and the smallest safeties allowed.
+
+    Raises
+    ------
+    ConfigError
+        Where the section rates bearings alone.
     """
     duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
+    if section.pinion is None or section.face_gear is None:
+        raise ConfigError("strength.pinion", None, "given for a rating of teeth")
     sections = {"pinion": section.pinion, "face_gear": section.face_gear}
     if spectrum is None:
         flanks = tuple(

@@ -166,8 +166,14 @@ class ContactAnalysis:
 
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
-        """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position."""
-        return [ltca_table(*result) for result in self.results]
+        """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position; for
+        teeth other than spur ones WRENCH_QUANTITIES follow.
+        """
+        tables = [ltca_table(*result) for result in self.results]
+        if self.models[0].design.is_spur:
+            return tables
+        on = ["torque_n_m", "position"]
+        return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
@@ -176,6 +182,21 @@ class ContactAnalysis:
             pressure_arrays(results, model.flanks.pinion, pressure)
             for model, (results, pressure) in zip(self.models, self.results, strict=True)
         ]
+
+    @cached_property
+    def stored_pressure(self) -> dict[str, AnyArray]:
+        """Arrays of the pressure file: PRESSURE_ARRAYS of the upper gear's drive flank, with those of the
+        other pairs for teeth other than spur ones, see `pattern.pressure_of_flanks`.
+        """
+        if self.models[0].design.is_spur:
+            return self.pressure[0]
+        arrays = {**self.pressure[0], "flank_variant": self.numbers}
+        for number, (pressure, table) in enumerate(zip(self.pressure[1:], self.ltca[1:], strict=True), 1):
+            unloaded_error = dict(zip(table["position"], 1e-6 * table["unloaded_ste_um"], strict=True))
+            errors = [unloaded_error[position] for position in pressure["contact_position"].tolist()]
+            arrays |= {f"{number}_{name}": values for name, values in pressure.items()}
+            arrays[f"{number}_unloaded_m"] = np.array(errors)
+        return arrays
 
     @cached_property
     def wrenches(self) -> list[pd.DataFrame]:
@@ -200,7 +221,7 @@ class ContactAnalysis:
         designs = [model.design for model in self.models]
         if designs[0].is_spur:
             return by_flank(self.by_torque, designs, self.numbers)
-        tables = zip(self.by_torque, self.ltca, self.wrenches, strict=True)
+        tables = zip(self.by_torque, self.ltca, strict=True)
         return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)
 
     @cached_property

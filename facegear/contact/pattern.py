@@ -64,7 +64,38 @@ PRESSURE_ARRAYS = {
     "contact_tooth": (None,),
     "contact_point_m": (None, None, 3),
 }
-"""Arrays of the pressure file, see `facegear.contact.analysis.pressure_arrays`."""
+"""Arrays of the pressure file, see `facegear.contact.analysis.pressure_arrays`.
+
+They belong to the drive flank of the upper gear. For teeth other than spur ones `flank_variant` (2, 2)
+follows, the number of the contact of each gear (upper, lower) and flank (drive, back), and the arrays of
+further contacts behind their number (1_force_n), with their unloaded_m: unloaded transmission error of each
+entry of `contact_position`.
+"""
+
+
+def pressure_of_flanks(arrays: Arrays) -> tuple[list[Arrays], Integers]:
+    """Take apart the arrays of the contacts of all flanks.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    list of Arrays
+        PRESSURE_ARRAYS of each contact, that of the upper gear's drive flank first; `unloaded_m` with the
+        others.
+    (2, 2) array of int
+        Number of the contact of each gear (upper, lower) and flank (drive, back); 0 where all are alike.
+    """
+    numbers = np.asarray(arrays.get("flank_variant", np.zeros((2, 2), dtype=int)))
+    names = (*PRESSURE_ARRAYS, "unloaded_m")
+    further_arrays = [
+        {name: arrays[f"{number}_{name}"] for name in names} for number in range(1, int(numbers.max()) + 1)
+    ]
+    return [arrays, *further_arrays], numbers
+
 
 LOAD_ARRAYS = {
     "variant": (None,),

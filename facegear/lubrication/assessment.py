@@ -2,19 +2,23 @@
 
 Friction of a mesh as a disturbance of the motion: its force and moments over the force of the mesh. At every
 loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at each
-position of a pitch keep the sign that sliding has there: it turns at the pitch line.
+position of a pitch keep the sign that sliding has there: it turns at the pitch line. Spur teeth at right
+angles know forces at the pitch point alone, all others the whole wrench on the pinion.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import AnyArray, Array, Mask
+from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.lubrication.columns import (
     BY_TORQUE_COLUMNS,
     EXCITATION_COLUMNS,
+    EXCITATION_FLANK,
+    EXCITATION_TILTS,
     LIMIT_COLUMNS,
     MAP_COLUMNS,
     POSITION_COLUMNS,
@@ -25,9 +29,10 @@ from facegear.lubrication.friction import LIMIT_SOURCES
 from facegear.lubrication.heat import Running, TooHot, mean_flash, running
 from facegear.lubrication.kinematics import spins
 from facegear.lubrication.loss import HatSlip, loss_factors
-from facegear.lubrication.machine_loss import LoadedPair
+from facegear.lubrication.pairs import LoadedPair
 from facegear.lubrication.request import Limits, Lubrication
 from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import FLANKS, GEARS
 
 
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:
@@ -35,7 +40,7 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
 
     At each hat friction acts on the pinion against its sliding velocity over the gear, with the
     coefficient times the normal force; the gear gets the opposite force. The mesh force is torque over
-    the pinion's base radius, the force along the line of action that carries the torque.
+    `normal_arm`, the force along the line of action that carries the torque.
 
     Parameters
     ----------
@@ -48,10 +53,12 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
 
     Returns
     -------
-    (p, 5) array
-        For each position, rising: force on the pinion along x, y and -z of the mesh frame (tangential,
-        along the pinion's axis, along the gear's axis), dimensionless; moment on the pinion about its
-        axis and on the face gear about its own, each over the mesh force, m.
+    (p, 5) or (p, 7) array
+        For each position, rising: force on the pinion along x of the mesh frame, along the pinion's axis and
+        along -z (tangential, along the pinion's axis, along the gear's axis), dimensionless; moment on the
+        pinion about its axis and on the face gear about its own, each over the mesh force, m. For teeth other
+        than spur ones follow the moments on the pinion, m, about the middle of its face, along x and along
+        the direction square to x and the pinion's axis, towards the gear.
     """
     positions, row = np.unique(hats.position, return_inverse=True)
     sliding = hats.sliding
@@ -62,39 +69,79 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
         np.cross(hats.point - body.through, sign * force) @ body.axis
         for body, sign in ((pinion, 1.0), (gear, -1.0))
     )
-    parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
-    sums = np.zeros((positions.size, 5))
+    across, axis, up = design.family.motion.basis
+    columns = [force[:, 0], force @ axis, -force[:, 2], on_pinion, on_gear]
+    if not design.is_spur:
+        middle = pinion.through - design.middle * pinion.axis
+        moment = np.cross(hats.point - middle, force)
+        columns += [moment @ across, -moment @ up]
+    parts = np.stack(columns, axis=1)
+    sums = np.zeros((positions.size, len(columns)))
     np.add.at(sums, row, parts)
     return sums * design.normal_arm / float(hats.torque[0])
 
 
-def excitation_table(pair: LoadedPair, states: Sequence[Running], design: PairDesign) -> pd.DataFrame:
+@dataclass(frozen=True, eq=False)
+class RubbingContact:
+    """One contact of a pair's flanks as friction sees it.
+
+    `design` is the pair whose drive flank it is, `pair` its loaded contacts by torque, `states` the state of
+    the flanks at each torque, with the friction coefficients.
+    """
+
+    design: PairDesign
+    pair: LoadedPair
+    states: Sequence[Running]
+
+    def excitation_table(self) -> pd.DataFrame:
+        """Tabulate force and moments of friction over the mesh force.
+
+        Returns
+        -------
+        pd.DataFrame
+            One row for each torque and position, columns EXCITATION_COLUMNS: torque (N m), position in
+            pitches, and the five ratios of `friction_ratios`, with the moments in mm; EXCITATION_TILTS behind
+            for teeth other than spur ones.
+        """
+        names = (
+            EXCITATION_COLUMNS[2:] if self.design.is_spur else (*EXCITATION_COLUMNS[2:], *EXCITATION_TILTS)
+        )
+        frames = []
+        for contact, state in zip(self.pair.contacts, self.states, strict=True):
+            hats = contact.hats
+            ratios = friction_ratios(self.design, hats, contact.at_hats(state.friction))
+            ratios[:, 3:] *= 1e3
+            frame = pd.DataFrame(ratios, columns=list(names))
+            frame.insert(0, "torque_n_m", contact.torque)
+            frame.insert(1, "position", np.unique(hats.position))
+            frames.append(frame)
+        return pd.concat(frames, ignore_index=True)
+
+
+def excitation_table(contacts: Sequence[RubbingContact], numbers: Integers) -> pd.DataFrame:
     """Tabulate force and moments of friction over the mesh force, by which friction disturbs the motion.
 
     Parameters
     ----------
-    pair : LoadedPair
-        The lubricated pair.
-    states : Sequence[Running]
-        State of the flanks at each torque of the pair, with its friction coefficients.
-    design : PairDesign
-        Geometry of the pair.
+    contacts : Sequence[RubbingContact]
+        Contacts of the flanks, that of the upper gear's drive flank first.
+    numbers : (2, 2) array of int
+        Number of the contact of each gear (upper, lower) and flank (drive, back).
 
     Returns
     -------
     pd.DataFrame
-        One row for each torque and position, columns EXCITATION_COLUMNS: torque (N m), position in
-        pitches, and the five ratios of `friction_ratios`, with the moments in mm.
+        Table of the only contact for spur teeth. Otherwise the tables of all flanks, each with columns gear
+        and flank in front; a back flank's table is that of the mirrored pair, in which it drives.
     """
+    tables = [contact.excitation_table() for contact in contacts]
+    if contacts[0].design.is_spur:
+        return tables[0]
     frames = []
-    for contact, state in zip(pair.contacts, states, strict=True):
-        hats = contact.hats
-        ratios = friction_ratios(design, hats, contact.at_hats(state.friction))
-        ratios[:, 3:] *= 1e3
-        frame = pd.DataFrame(ratios, columns=list(EXCITATION_COLUMNS[2:]))
-        frame.insert(0, "torque_n_m", contact.torque)
-        frame.insert(1, "position", np.unique(hats.position))
-        frames.append(frame)
+    for (gear, flank), number in np.ndenumerate(numbers):
+        names = dict(zip(EXCITATION_FLANK, (GEARS[gear], FLANKS[flank]), strict=True))
+        table = tables[number].assign(**names)
+        frames.append(table[[*EXCITATION_FLANK, *tables[number].columns]])
     return pd.concat(frames, ignore_index=True)
 
 

@@ -68,6 +68,10 @@ EXCITATION_COLUMNS = (
     "face_gear_lever_mm",
 )
 """Friction over the force of the mesh: forces on the pinion, moments on pinion and face gear."""
+EXCITATION_FLANK = ("gear", "flank")
+"""Columns in front of EXCITATION_COLUMNS for teeth other than spur ones, whose flanks all have rows."""
+EXCITATION_TILTS = ("pinion_tilt_x_mm", "pinion_tilt_y_mm")
+"""Columns behind EXCITATION_COLUMNS for teeth other than spur ones: moments that tilt the pinion."""
 
 LIMIT_COLUMNS = ("friction_model", "limit", "limit_source", "torque_n_m", "loss_outside_percent")
 """Columns of `assessment.limit_table`."""

@@ -128,7 +128,7 @@ def shear_heating(
     (...) array
         Factor on the film thickness, dimensionless.
     """
-    speed = 0.5 * (np.asarray(u1, float) + u2)
+    speed = 0.5 * np.abs(np.asarray(u1, float) + u2)
     slide = np.abs(np.asarray(u1, float) - u2) / speed
     loading = np.asarray(viscosity, float) * thinning * speed**2 / conductivity
     numerator = 1 - 13.2 * np.asarray(pressure, float) / reduced_modulus * loading**0.42

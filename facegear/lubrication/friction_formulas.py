@@ -47,8 +47,10 @@ class Rubbing:
 
     @property
     def sum_velocity(self) -> Array:
-        """Sum of the rolling velocities, v_S = u1 + u2, m/s."""
-        return self.u1 + self.u2
+        """Magnitude of the sum of the rolling velocities, v_S = abs(u1 + u2), m/s: beside a gear's root the
+        gear may run backwards and faster than the pinion runs.
+        """
+        return np.abs(self.u1 + self.u2)
 
 
 def schlenk(
@@ -226,7 +228,7 @@ def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: 
     """
     p, speed, thick = (
         1e-9 * np.asarray(pressure, float),
-        0.5 * (np.asarray(u1, float) + u2),
+        0.5 * np.abs(np.asarray(u1, float) + u2),
         1e3 * np.asarray(viscosity, float),
     )
     slide = np.abs(np.asarray(u1, float) - u2) / speed

@@ -384,7 +384,7 @@ def _line_film(
         lubrication.reduced_modulus,
     )
     coefficient = oil.pressure_coefficient_at(warm)
-    entrainment_speed = 0.5 * (u1 + u2)
+    entrainment_speed = 0.5 * np.abs(u1 + u2)
     wet = viscosity, coefficient, lubrication.reduced_modulus
     return sheared * line_film(spots.radius, entrainment_speed, spots.line_load, *wet), sheared
 

@@ -1,256 +1,22 @@
 """Loss and heat of a machine: those of every mesh by the power it carries, summed over its bodies.
 
 Power that passes several meshes in turn is lost in each of them, and power that circulates in a loop as well:
-loss is taken of what a mesh carries, never of what the machine is given. A back flank is the mirror image of
-the drive flank and has the same loss. To first order in friction the forces are those without it.
+loss is taken of what a mesh carries, never of what the machine is given. To first order in friction the
+forces are those without it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Protocol
 
 import numpy as np
 from scipy.optimize import NoConvergence, anderson
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
-from facegear.lubrication.contact_points import LoadedContact
-from facegear.lubrication.heat import (
-    BULK_TOLERANCE,
-    STEPS,
-    Running,
-    require_cool,
-    running,
-    running_at,
-    starting_bulk,
-)
-from facegear.lubrication.loss import OverTorque, monotone_at
+from facegear.lubrication.heat import BULK_TOLERANCE, STEPS, require_cool, starting_bulk
+from facegear.lubrication.loss import OverTorque
+from facegear.lubrication.pairs import LossCurves, MeshCurves, Pair
 from facegear.lubrication.request import Cooling, Lubrication
-
-
-@dataclass(frozen=True, eq=False)
-class LossCurves:
-    """Loss of n meshes at a speed and at t torques (t,) N m, both (n, t).
-
-    `loss_fraction` is the part of a mesh's power that is lost, `heat_fraction` the part of the loss that
-    heats the pinion. Between torques each is interpolated as in `OverTorque`.
-    """
-
-    torques: Array
-    loss_fraction: Array
-    heat_fraction: Array
-
-    def at(self, torque: Array, *names: str) -> Array:
-        """Interpolate fields of each mesh at that mesh's torque, monotone in the logarithm of the torque.
-
-        Outside the solved torques the value at the nearest one is kept.
-
-        Parameters
-        ----------
-        torque : (n,) array
-            Torque of each mesh on its pinion, positive, N m.
-        *names : str
-            Names of fields, such as "loss_fraction".
-
-        Returns
-        -------
-        (names, n) array
-            One row for each name, in the unit of its field.
-        """
-        values = np.stack([getattr(self, name) for name in names])
-        if self.torques.size == 1:
-            return values[..., 0]
-        log_torque = np.log(np.clip(torque, self.torques[0], self.torques[-1]))
-        return monotone_at(np.log(self.torques), values, log_torque)
-
-
-@dataclass(frozen=True, eq=False)
-class MeshCurves(LossCurves):
-    """Loss, temperature and film of n meshes at t torques.
-
-    Besides the loss, the largest `flash` (K), the smallest `film_ratio` and `micropitting` ratio, all (n, t)
-    and away from edges.
-    """
-
-    flash: Array
-    film_ratio: Array
-    micropitting: Array
-
-
-class Pair(Protocol):
-    """Tooth pair whose contact is known at some torques, and how it is lubricated."""
-
-    @property
-    def lubrication(self) -> Lubrication:
-        """Oil, roughness, friction and bulk temperature of the flanks."""
-        ...
-
-    @property
-    def torques(self) -> Array:
-        """Pinion torques (t,) N m at which the contact is solved, rising."""
-        ...
-
-    def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the friction loss of meshes at every solved torque, at given bulk temperatures.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-        bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
-
-        Returns
-        -------
-        LossCurves
-            Lost part of the power, and the pinion's part of its heat, both (n, t).
-        """
-
-    def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes at every solved torque, at given bulk temperatures.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-        bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
-
-        Returns
-        -------
-        MeshCurves
-            Loss and heat fractions, largest flash (K), smallest film and micropitting ratio, each (n, t).
-        """
-
-    def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
-        """Compute one mesh alone, with the bulk temperatures that follow from `lubrication.bulk` at each
-        torque.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-
-        Returns
-        -------
-        MeshCurves and (t, 2) array
-            Loss, temperature and film (1, t), and bulk temperatures of pinion and gear, C.
-        """
-
-
-@dataclass(frozen=True, eq=False)
-class LoadedPair:
-    """Contacts of the tooth pair at rising torques, and how it is lubricated."""
-
-    contacts: tuple[LoadedContact, ...]
-    lubrication: Lubrication
-
-    @property
-    def torques(self) -> Array:
-        """Pinion torques (t,) N m of the contacts, rising."""
-        return np.array([contact.torque for contact in self.contacts])
-
-    def states(self, speed: float, bulk: tuple[float, float] | None = None) -> list[Running]:
-        """Compute friction, heat and film of one mesh at every torque, at all of its contact points.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-        bulk : tuple[float, float] or None
-            Bulk temperatures of pinion and gear, C. If None, they follow at each torque from
-            `lubrication.bulk` with the heat of this mesh alone.
-
-        Returns
-        -------
-        list[Running]
-            One state for each torque.
-        """
-        if bulk is None:
-            return [running(contact, speed, self.lubrication) for contact in self.contacts]
-        return [running_at(contact, speed, self.lubrication, bulk) for contact in self.contacts]
-
-    def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the friction loss of meshes at every torque; this class returns all curves, as `curves`
-        does.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-        bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
-
-        Returns
-        -------
-        LossCurves
-            A MeshCurves, whose lost part of the power and pinion's part of the heat are (n, t).
-        """
-        return self.curves(speed, bulk)
-
-    def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes; meshes of equal bulk temperatures are computed
-        once.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-        bulk : (n, 2) array
-            Bulk temperatures of pinion and gear of each mesh, C.
-
-        Returns
-        -------
-        MeshCurves
-            Loss and heat fractions, largest flash (K), smallest film and micropitting ratio, each (n, t).
-        """
-        different, of = np.unique(bulk, axis=0, return_inverse=True)
-        rows = [self._row(self.states(speed, (low, high)), speed) for low, high in different.tolist()]
-        return MeshCurves(self.torques, *np.stack(rows, axis=1)[:, of.ravel()])
-
-    def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
-        """Compute one mesh alone, with the bulk temperatures that follow from `lubrication.bulk` at each
-        torque.
-
-        Parameters
-        ----------
-        speed : float
-            Pinion speed, rad/s.
-
-        Returns
-        -------
-        MeshCurves and (t, 2) array
-            Loss, temperature and film (1, t), and bulk temperatures of pinion and gear, C.
-
-        Raises
-        ------
-        TooHot
-            If a body passes the oil's flash point.
-        NotConverged
-            If bulk temperatures do not settle.
-        """
-        states = self.states(speed)
-        curves = MeshCurves(self.torques, *self._row(states, speed)[:, None])
-        return curves, np.array([state.bulk for state in states])
-
-    def _row(self, states: Sequence[Running], speed: float) -> Array:
-        """Return five rows by t torques of one mesh, in the order of MeshCurves' fields after `torques`.
-
-        Rows: loss fraction, the pinion's part of the heat, largest flash (K), smallest film ratio and
-        smallest micropitting ratio, the last three away from edges. `speed` is the pinion's, rad/s.
-        """
-        inside = [contact.points.inside for contact in self.contacts]
-        rows = [
-            (
-                state.loss / (torque * speed),
-                state.heat[0] / state.loss if state.loss > 0 else 0.5,
-                state.flash[on].max(initial=0.0),
-                state.film_ratio[on].min(initial=np.inf),
-                state.micropitting[on].min(initial=np.inf),
-            )
-            for state, torque, on in zip(states, self.torques, inside, strict=True)
-        ]
-        return np.array(rows).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,7 +75,8 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
     Parameters
     ----------
     pair : Pair
-        Lubricated tooth pair, with all contact points (LoadedPair) or few of them (ReducedPair).
+        Lubricated tooth pair, with all contact points (LoadedPair) or few of them (ReducedPair); PairByMesh
+        where the loaded flanks have contacts of their own.
     loads : MeshLoads
         Bodies, mean and peak torques (N m) of the n loaded flanks.
     speed : float
@@ -330,11 +97,17 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
     lubrication, count = pair.lubrication, loads.torque.size
     if not isinstance(lubrication.bulk, Cooling):
         single, single_bulk = pair.single_mesh_curves(speed)
+        shape = count, pair.torques.size
         curves = MeshCurves(
             pair.torques,
-            *(np.repeat(getattr(single, field.name), count, axis=0) for field in fields(single)[1:]),
+            *(np.broadcast_to(getattr(single, field.name), shape) for field in fields(single)[1:]),
         )
-        return _machine_loss_of(loads, curves, speed, OverTorque(pair.torques, single_bulk).at(loads.torque))
+        if len(single_bulk) == 1:
+            bulk = OverTorque(pair.torques, single_bulk[0]).at(loads.torque)
+        else:
+            of_flanks = zip(single_bulk, loads.torque.tolist(), strict=True)
+            bulk = np.stack([OverTorque(pair.torques, values).at(torque) for values, torque in of_flanks])
+        return _machine_loss_of(loads, curves, speed, bulk)
     cooling = lubrication.bulk
 
     def step(bulk: Array) -> Array:

@@ -23,7 +23,8 @@ from facegear.lubrication.heat import (
     mean_flash,
     starting_bulk,
 )
-from facegear.lubrication.machine_loss import LossCurves, MeshCurves, settled_bulk
+from facegear.lubrication.machine_loss import settled_bulk
+from facegear.lubrication.pairs import LossCurves, MeshCurves
 from facegear.lubrication.request import BorrowedBulk, Lubrication
 
 SINGULAR = 1e-10
@@ -202,7 +203,7 @@ def _extremes(spots: ContactPoints, state: Local, is_borrowed: bool) -> Integers
 
 @dataclass(frozen=True, eq=False)
 class ReducedPair:
-    """Tooth pair by few points of its contact, and how it is lubricated; a `Pair` of machine_loss."""
+    """Tooth pair by few points of its contact, and how it is lubricated: a `Pair`."""
 
     few: FewPlaces
     lubrication: Lubrication
@@ -262,7 +263,7 @@ class ReducedPair:
 
         Returns
         -------
-        MeshCurves and (t, 2) array
+        MeshCurves and (1, t, 2) array
             Loss, temperature and film (1, t), and bulk temperatures of pinion and gear, C.
 
         Raises
@@ -288,7 +289,7 @@ class ReducedPair:
                 return np.repeat(lubrication.oil_temperature + factor * np.array(means), 2).reshape(-1, 2)
 
             bulk = settled_bulk(step, lubrication, self.torques, speed)
-        return self._curves(speed, bulk.mean(axis=1)[None]), bulk
+        return self._curves(speed, bulk.mean(axis=1)[None]), bulk[None]
 
     def _at_torques(self, bulk: Array) -> Array:
         """Average bulk temperatures (n, 2) C of pinion and gear, and repeat the mean at every torque: (n,

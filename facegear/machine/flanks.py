@@ -156,7 +156,7 @@ def flank_law(machine: Machine) -> MeshLaw:
     """Return the force law of all drive flanks, then all back flanks, each with its own lag.
 
     `machine.law` wins where it is given; else the law is made from `machine.tables`; else it is linear
-    with `machine.mesh_stiffness`. A back flank has the mirrored series.
+    with `machine.stiffness_by_flank`. A back flank has the mirrored series.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def _flank_law(machine: Machine) -> MeshLaw:
         return machine.law
     phases = flank_lags(machine, machine.phases)
     if machine.tables is None:
-        return _linear_law(machine.mesh_stiffness, phases)
+        return _linear_law(*machine.stiffness_by_flank, phases)
     gears, factors = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
     return _law_of_tables(machine.tables, gears, factors, machine.own_softening, _lags(phases))
 
@@ -213,13 +213,13 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 
 
 @kept_by_content(4)
-def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
+def _linear_law(drive: tuple[Harmonics, ...], back: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
     """Return the linear law of all drive flanks, then all back flanks.
 
-    stiffness: series of each mesh over the reference's cycle, N/m; phases (2 meshes,): lags of the flanks,
-    mesh periods.
+    drive, back: series of each mesh over the reference's cycle, N/m, of back flanks before they are
+    mirrored; phases (2 meshes,): lags of the flanks, mesh periods.
     """
-    return linear_law(_flank_series(stiffness, phases))
+    return linear_law(_flank_series(drive, back, phases))
 
 
 @kept_by_content(4)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from facegear.machine.flank_errors import flank_lags
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
 from facegear.motion.between_samples import located_extremes
@@ -97,7 +98,8 @@ def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float)
         raise ValueError("a machine with friction is needed")
     forces = response["elastic_force_n"].to_numpy().reshape(len(layout.meshes), -1).T
     cycles = response["mesh_cycle"].to_numpy()[: len(forces)]
-    mean_losses = friction.loss(machine.phases, cycles, forces).mean(axis=0)
+    lags = flank_lags(machine, machine.phases)
+    mean_losses = friction.loss(lags, cycles, forces).mean(axis=0)
     return dict(zip(layout.mesh_names, speed_rpm * TAU / 60.0 * layout.pinion_arm * mean_losses, strict=True))
 
 

@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from facegear.build.kinds_of_teeth import refused_moves, refusing_names, require_kind
+from facegear.build.kinds_of_teeth import refused_moves, require_kind
 from facegear.errors import ConfigError
 from facegear.pipeline.stage import Case, ComputedValue, Need, Needs, Values
 from facegear.pipeline.table import STAGES
@@ -76,7 +76,7 @@ def require_section(name: str | None, values: Values) -> None:
         Where the section is missing.
     """
     section = STAGES[name].section if name else ""
-    if section and values[section] is None:
+    if section and value_at(values, section) is None:
         raise ConfigError(section, None, f"given, as rule {name} needs it")
 
 
@@ -97,7 +97,7 @@ def require_teeth(name: str | None, values: Values) -> None:
     """
     if name in STAGES:
         stages = stages_before(name, values)[::-1]
-        require_kind(refusing_names(stages, values), values["tooth_pair"])
+        require_kind(stages, values["tooth_pair"])
         for error in refused_moves(stages, values):
             raise error
 

@@ -23,6 +23,7 @@ from facegear.report.chapter_tables import (
     SHAFT_TABLES,
     STUDY_COLUMNS,
     bearing_reactions,
+    casing_tables,
     errors_chapter,
     friction_tables,
     jump_tables,
@@ -32,6 +33,7 @@ from facegear.report.chapter_tables import (
     stress_over_speed_tables,
 )
 from facegear.report.contents import (
+    CASING,
     CHAPTERS,
     FRICTION,
     POSES,
@@ -255,6 +257,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == SHAFTS:
         shaft_tables = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
         return [*[table for table in shaft_tables if len(table.frame)], *bearing_tables(tables)]
+    if title == CASING:
+        return casing_tables(tables)
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, bearing_reactions(tables["bearings"]))] if "bearings" in tables else []
         return [*bearings, *jump_tables(tables)]

@@ -374,6 +374,43 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
     return table
 
 
+CASING_TABLES = {
+    "casing_load_sharing": "Forces of the meshes under the mean torques, on the casing and on fixed seats",
+    "casing_seat_motions": "Motions of the seats under the mean torques, along and about the casing's axes",
+    "casing_feet": "What the casing presses on its feet, in sum and beside what is applied; on ground: "
+    "bearings without a seat",
+    "casing_machine_modes": "Modes of the machine on its casing, by the part of their kinetic energy in the "
+    "casing",
+}
+"""Captions of the tables of the casing."""
+
+
+def casing_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of the machine on its casing.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the case by name; those of CASING_TABLES and `casing_sensors` are read, and may be missing.
+
+    Returns
+    -------
+    list of Table
+        The tables, and the largest acceleration of every sensor by orders of the mesh.
+    """
+    report_tables = [
+        Table(words, tables[name], is_folded=len(tables[name]) > LONG_TABLE)
+        for name, words in CASING_TABLES.items()
+        if name in tables
+    ]
+    if "casing_sensors" in tables:
+        loudest = first_largest_rows(tables["casing_sensors"], "acceleration_m_per_s2", ["sensor", "order"])
+        columns = ["sensor", "order", "acceleration_m_per_s2", "speed_rpm", "frequency_hz"]
+        words = "Largest acceleration of every sensor by orders of the mesh"
+        report_tables.append(Table(words, loudest[columns], is_folded=len(loudest) > LONG_TABLE))
+    return report_tables
+
+
 def errors_chapter(tables: Mapping[str, pd.DataFrame]) -> Chapter:
     """Return the chapter on the numerical errors of the results.
 

@@ -146,7 +146,9 @@ def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
     if rows.empty:
         if len(rating):
             return Verdict(RATED_FAILURES[failure], GREY, UNRATED)
-        return _without_result(values, "strength", RATED_FAILURES[failure])
+        section = values["strength"]
+        rated_teeth = None if section is None else section["pinion"]
+        return _without_result({"strength": rated_teeth}, "strength", RATED_FAILURES[failure])
     row = nearest_rating(rows)
     colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
     same_flank = rows[

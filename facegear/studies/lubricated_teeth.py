@@ -8,18 +8,21 @@ import numpy as np
 import pandas as pd
 
 from facegear import quantities
-from facegear.arrays import Arrays
+from facegear.arrays import Arrays, Integers, Mask
 from facegear.build.lubrication import contacts_of, lubrication_of
 from facegear.build.tooth_pair import ToothPair
 from facegear.lubrication.contact_points import LoadedContact
 from facegear.lubrication.film import temperature_safety
-from facegear.lubrication.machine_loss import LoadedPair, MachineLoss, MeshLoads, Pair, machine_loss
+from facegear.lubrication.machine_loss import MachineLoss, MeshLoads, machine_loss
+from facegear.lubrication.pairs import FlankPairs, LoadedPair, Pair
 from facegear.lubrication.reduction import Condition, FewPlaces, ReducedPair, reduce_contacts
 from facegear.lubrication.request import GivenBulk, Limits, Lubrication
+from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
 from facegear.machine.ratings import compute_ratings
 from facegear.schema.lubrication import LubricationSection
 from facegear.sharing.quantities import FlankLoads
+from facegear.teeth.placement import GEARS
 
 GOLDEN = 0.6180339887
 """Multiples of it, less their whole part, are spread evenly over 0..1 however many are taken."""
@@ -30,14 +33,18 @@ State = tuple[LubricationSection, float]
 
 @dataclass(frozen=True, eq=False)
 class LubricatedTeeth:
-    """Contact of a tooth pair at all its points, and at few."""
+    """Contacts of the flanks of a tooth pair at all their points, and at few.
+
+    `numbers` (2, 2): number of the contact of each gear (upper, lower) and flank (drive, back).
+    """
 
     section: ToothPair
-    contacts: tuple[LoadedContact, ...]
-    few: FewPlaces
+    contacts: tuple[tuple[LoadedContact, ...], ...]
+    few: tuple[FewPlaces, ...]
+    numbers: Integers
 
-    def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
-        """Return the pair with its lubrication, for losses at any mesh torque.
+    def pairs(self, lubrication: LubricationSection, every_place: bool) -> FlankPairs:
+        """Return the pairs of all flanks with their lubrication, for losses at any mesh torque.
 
         Parameters
         ----------
@@ -49,11 +56,15 @@ class LubricatedTeeth:
 
         Returns
         -------
-        Pair
-            Contact at the torques of the analysis, with the lubrication in SI units.
+        FlankPairs
+            Contacts at the torques of the analysis, with the lubrication in SI units.
         """
         request = lubrication_of(lubrication, self.section)
-        return LoadedPair(self.contacts, request) if every_place else ReducedPair(self.few, request)
+        if every_place:
+            pairs: tuple[Pair, ...] = tuple(LoadedPair(contact, request) for contact in self.contacts)
+        else:
+            pairs = tuple(ReducedPair(few, request) for few in self.few)
+        return FlankPairs(pairs, self.numbers)
 
 
 ReduceTeeth = Callable[[pd.DataFrame, Arrays, ToothPair], LubricatedTeeth]
@@ -81,12 +92,13 @@ def reduction_over(states: Sequence[State]) -> ReduceTeeth:
         """Return a pair's contact at all points and reduced to few, from table `ltca` and arrays
         `pressure`.
         """
-        contacts = contacts_of(ltca, pressure, section)
+        contacts, numbers = contacts_of(ltca, pressure, section)
         conditions = [
             _condition(lubrication_of(lubrication, section), speed_rpm, (GOLDEN * number) % 1.0)
             for number, (lubrication, speed_rpm) in enumerate(states)
         ]
-        return LubricatedTeeth(section, contacts, reduce_contacts(contacts, conditions))
+        few = tuple(reduce_contacts(contact, conditions) for contact in contacts)
+        return LubricatedTeeth(section, tuple(contacts), few, numbers)
 
     return reduce_contact
 
@@ -105,7 +117,7 @@ def _condition(lubrication: Lubrication, speed_rpm: float, part: float) -> Condi
 
 
 def friction_quantities(
-    machine: Machine, speed_rpm: float, loads: FlankLoads, pair: Pair, limits: Limits
+    machine: Machine, speed_rpm: float, loads: FlankLoads, pairs: FlankPairs, limits: Limits
 ) -> dict[str, float]:
     """Compute the friction quantities of a machine: loss by the mean loads of its flanks, heat and film
     by their largest.
@@ -118,8 +130,8 @@ def friction_quantities(
         Pinion speed, rpm.
     loads : FlankLoads
         Mean and largest force of each flank (2 meshes,), N, drive flanks first.
-    pair : Pair
-        Lubricated tooth pair.
+    pairs : FlankPairs
+        Lubricated tooth pairs of all flanks.
     limits : Limits
         Limits of temperature and film.
 
@@ -138,7 +150,9 @@ def friction_quantities(
     NotConverged
         If bulk temperatures do not settle.
     """
-    meshes = mesh_loads(machine, loads)
+    meshes, layout = mesh_loads(machine, loads), machine.layout
+    flanks, count = np.flatnonzero(loads.largest > 0.0), len(layout.meshes)
+    pair = pair_of_meshes(pairs, layout, flanks % count, np.asarray(flanks >= count))
     losses = machine_loss(pair, meshes, speed_rpm * pi / 30)
     power_in = compute_ratings(machine, speed_rpm).power_in
     hottest, film_ratio = float(losses.contact_temperature.max()), float(losses.film_ratio.min())
@@ -158,6 +172,30 @@ def friction_quantities(
         quantities.MICROPITTING: float(losses.micropitting.min()),
         quantities.UNSOLVED: _unsolved(losses),
     }
+
+
+def pair_of_meshes(pairs: FlankPairs, layout: Layout, meshes: Integers, on_back: Mask) -> Pair:
+    """Return the pair that stands for loaded flanks of a machine.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        Pairs of all flanks.
+    layout : Layout
+        Meshes of the machine.
+    meshes : (n,) array of int
+        Number of the mesh of each loaded flank.
+    on_back : (n,) array of bool
+        Whether it is the back flank.
+
+    Returns
+    -------
+    Pair
+        Pair of the n flanks.
+    """
+    rows = [GEARS.index(gear.side.value) if len(layout.gears) > 1 else 0 for gear in layout.gears]
+    gears = np.array([rows[g] for _, g in layout.meshes])
+    return pairs.of_meshes(gears[meshes], on_back.astype(int))
 
 
 def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:

@@ -313,9 +313,10 @@ def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
         else:
             reach = np.where(np.isfinite(distance), distance, 0.0)
             displacement = signed_distance(design, outline, after, 0.5 * design.module)[0] - reach
-        lever = displacement / (TURN * design.gear_normal_arm)
-        turn = np.where(lever > FREES, -distance / np.maximum(lever, FREES), np.inf)
-        turn = np.where(distance < -TOUCH, turn, 0.0)
+        is_deep = distance < -TOUCH  # elsewhere distances may be infinite
+        lever = displacement[is_deep] / (TURN * design.gear_normal_arm)
+        turn = np.zeros(distance.shape)
+        turn[is_deep] = np.where(lever > FREES, -distance[is_deep] / np.maximum(lever, FREES), np.inf)
         largest_turn = np.maximum(largest_turn, turn.max(axis=(1, 2)))
     return largest_turn
 

@@ -11,6 +11,7 @@ from validation.kinds_of_teeth import (
     PAIR,
     TABLE,
     TORQUE,
+    friction_values,
     loaded_values,
     machine_values,
     page_table,
@@ -30,7 +31,8 @@ def test_every_kind_has_its_column_on_the_page():
 
 @pytest.mark.parametrize("kind", ["spur", "tapered, 4 deg"])
 def test_stored_contact_is_that_of_the_pair(kind):
-    for name, value in loaded_values(pair_alone(kind)).items():
+    pair = pair_alone(kind)
+    for name, value in {**loaded_values(pair), **friction_values(pair)}.items():
         assert value == pytest.approx(STORED.loc[kind, name], rel=1e-5), name
 
 

@@ -15,11 +15,13 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.by_content import kept_by_content
 from facegear.harmonics import Harmonics
-from facegear.machine.disturbances import MeshFriction, flank_ratios, friction_rows
+from facegear.machine.disturbances import MeshFriction, friction_rows
+from facegear.machine.flank_errors import flank_lags
 from facegear.machine.flanks import mesh_contacts
 from facegear.machine.machine import Machine, OpenFlanks
 from facegear.meshing.law import MeshLaw
 from facegear.meshing.linear import different
+from facegear.meshing.moving_law import MovingLaw, moving_law
 from facegear.motion.integrator.reduction import Coupling, Reduction
 
 RING_ROWS = 3
@@ -70,6 +72,9 @@ class System:
     coupling
         Forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or None; the
         diagonal of its dampers is in `damping` and not in them.
+    phase_shifts : (contacts, n) array or None
+        Matrix that turns coordinates into the places of the contacts in the mesh cycle beside the even
+        rotation, rad, where `law` is a `MovingLaw`; else None.
     """
 
     mesh_jacobian: Array
@@ -91,6 +96,7 @@ class System:
     ring_lag: float = 0.0
     rubbing: "FlankRubbing | None" = None
     coupling: Coupling | None = None
+    phase_shifts: Array | None = None
 
     @property
     def size(self) -> int:
@@ -103,6 +109,27 @@ class System:
         bearing with clearance.
         """
         return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
+
+    def contact_forces(self, cycles: Array, beyond: Array, phase_shifts: Array | None = None) -> Array:
+        """Return the elastic forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, contacts) array
+            Compression of the contacts, m.
+        phase_shifts : (..., K, contacts) array or None
+            Their places in the mesh cycle beside the even rotation, rad, where the system has `phase_shifts`.
+
+        Returns
+        -------
+        (..., K, contacts) array
+            N.
+        """
+        if isinstance(self.law, MovingLaw) and phase_shifts is not None:
+            return self.law.energy(cycles, beyond, phase_shifts, (1, 0))
+        return self.law.force(cycles, beyond)
 
     @property
     def pairs(self) -> int:
@@ -141,6 +168,10 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         Equations of motion.
     """
     contacts, rings = mesh_contacts(machine), machine.linear.rings
+    law, phase_shifts = contacts.law, None
+    if machine.has_phase_shifts:
+        law = moving_law(law, len(reduction.mesh_jacobian))
+        phase_shifts = machine.phase_rows @ reduction.basis
     zeros = 3 * rings.body.size * [0.0]
     error, error_kind = _kinds((*contacts.error, *len(zeros) * [NO_ERROR]))
     load = np.zeros((reduction.omega_squared.size, 2, 1))
@@ -152,7 +183,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         mesh_damping=np.append(contacts.damping, zeros),
         lower=np.append(contacts.lower, np.tile([0.0, 0.0, -np.inf], rings.body.size)),
         upper=np.append(contacts.upper, zeros),
-        law=contacts.law,
+        law=law,
         error=error,
         error_kind=error_kind,
         load=load,
@@ -165,6 +196,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         ring_lag=machine.linear.bearing_damping,
         coupling=reduction.coupling and reduction.coupling.per_speed(machine.layout.pinion_teeth),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduction),
+        phase_shifts=phase_shifts,
     )
 
 
@@ -182,9 +214,9 @@ def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> 
     """Return the friction of all flanks, drive flanks first, in reduced coordinates, without directions
     of zeros.
     """
-    rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
+    rows = np.tile(friction_rows(machine.layout, machine.linear, machine.drive_line), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
-    ratios = flank_ratios(friction.ratios, machine.phases)
+    ratios = friction.flank_ratios(flank_lags(machine, machine.phases))
     return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduction.basis)
 
 

@@ -7,13 +7,14 @@ from math import pi
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Array, Arrays
-from facegear.build.lubrication import contacts_of, limits_of, lubrication_of, map_speeds
+from facegear.arrays import Array, Arrays, Integers
+from facegear.build.lubrication import contacts_of, designs_of_contacts, limits_of, lubrication_of, map_speeds
 from facegear.build.machine import MachineInputs
-from facegear.build.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
 from facegear.lubrication import machine_loss as losses
 from facegear.lubrication.assessment import (
+    RubbingContact,
     by_torque_table,
     excitation_table,
     limit_table,
@@ -22,13 +23,14 @@ from facegear.lubrication.assessment import (
     position_table,
 )
 from facegear.lubrication.columns import FRICTION_STUDY_COLUMNS
-from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
+from facegear.lubrication.machine_loss import MeshLoads
 from facegear.lubrication.machine_tables import (
     MachineState,
     body_heat_table,
     machine_loss_table,
     mesh_loss_table,
 )
+from facegear.lubrication.pairs import FlankPairs, LoadedPair
 from facegear.machine.machine import Machine
 from facegear.machine.ratings import compute_ratings, mesh_table
 from facegear.motion.response_tables import losses_in_motion
@@ -36,6 +38,7 @@ from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
 from facegear.schema.lubrication import LubricationSection
 from facegear.schema.strength import Strength
+from facegear.studies.lubricated_teeth import pair_of_meshes
 
 
 def lubrication(
@@ -65,8 +68,9 @@ def lubrication(
     -------
     Outcome
         Tables `by_torque`, `positions`, `limits` and `map` (over torque and speed), described by
-        `FrictionResult`. Table `excitation`: force and moments of friction over the mesh force by
-        torque and position, with which the motion is excited. Arrays `local` (LOCAL_ARRAYS): quantities
+        `FrictionResult`, of the upper gear's drive flank. Table `excitation`: force and moments of friction
+        over the mesh force by torque and position, with which the motion is excited, of all flanks for
+        teeth other than spur ones. Arrays `local` (LOCAL_ARRAYS): quantities
         of every loaded plane.
 
     Raises
@@ -79,9 +83,12 @@ def lubrication(
         Where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
-    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
+    pairs, numbers = loaded_pairs(ltca, pressure, section, tooth_pair)
     limits, speed = limits_of(section), speed_rpm * pi / 30
-    states = pair_under_load.states(speed)
+    states_of_pairs = [pair.states(speed) for pair in pairs]
+    designs = designs_of_contacts(tooth_pair, len(pairs))
+    rubbing = [RubbingContact(*of_pair) for of_pair in zip(designs, pairs, states_of_pairs, strict=True)]
+    pair_under_load, states = pairs[0], states_of_pairs[0]
     table = by_torque_table(pair_under_load, states, speed, limits)
     content = {
         "by_torque": table,
@@ -89,7 +96,7 @@ def lubrication(
         "limits": limit_table(pair_under_load, states),
         "map": map_table(pair_under_load, map_speeds(section, speed_rpm)),
         "local": local_arrays(pair_under_load, states, speed),
-        "excitation": excitation_table(pair_under_load, states, pair(tooth_pair).design),
+        "excitation": excitation_table(rubbing, numbers),
     }
     last = table.iloc[-1]
     summary = (
@@ -122,14 +129,14 @@ def lubrication_section(section: LubricationSection | None) -> LubricationSectio
     return section
 
 
-def loaded_pair(
+def loaded_pairs(
     ltca: pd.DataFrame,
     pressure: Arrays,
     section: LubricationSection,
     tooth_pair: ToothPair,
-) -> LoadedPair:
-    """Join the stored contact of the pair with how it is lubricated; its `states(speed)` solve friction
-    at a speed in rad/s.
+) -> tuple[tuple[LoadedPair, ...], Integers]:
+    """Join the stored contacts of the pair's flanks with how they are lubricated; `states(speed)` of each
+    solves friction at a speed in rad/s.
 
     Parameters
     ----------
@@ -144,10 +151,14 @@ def loaded_pair(
 
     Returns
     -------
-    LoadedPair
-        Contact at every solved torque, and its lubrication.
+    tuple of LoadedPair
+        Every contact at the solved torques, that of the upper gear's drive flank first, and its lubrication.
+    (2, 2) array of int
+        Number of the contact of each gear (upper, lower) and flank (drive, back).
     """
-    return LoadedPair(contacts_of(ltca, pressure, tooth_pair), lubrication_of(section, tooth_pair))
+    contacts, numbers = contacts_of(ltca, pressure, tooth_pair)
+    request = lubrication_of(section, tooth_pair)
+    return tuple(LoadedPair(contact, request) for contact in contacts), numbers
 
 
 def friction_studies(
@@ -246,11 +257,12 @@ def machine_loss(
         Where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
-    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
-    states = list(_states(pair_under_load, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
+    pairs = FlankPairs(*loaded_pairs(ltca, pressure, section, tooth_pair))
+    states = list(_states(pairs, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
+    request = pairs.pairs[0].lubrication
     content = {
-        "meshes": mesh_loss_table(states, pair_under_load.lubrication, limits_of(section)),
-        "bodies": body_heat_table(states, pair_under_load.lubrication),
+        "meshes": mesh_loss_table(states, request, limits_of(section)),
+        "bodies": body_heat_table(states, request),
         "machine": machine_loss_table(states),
     }
     if inputs.friction is not None and response is not None:
@@ -272,7 +284,7 @@ def machine_loss(
 
 
 def _states(
-    pair_under_load: LoadedPair,
+    pairs: FlankPairs,
     inputs: MachineInputs,
     duty_loads: pd.DataFrame | None,
     strength: Strength | None,
@@ -290,22 +302,22 @@ def _states(
     table = table[table["flank"] != "open"]
     torque = table["pinion_torque_n_m"].abs().to_numpy()
     names = table["mesh"].tolist(), table["flank"].tolist()
-    yield _state(pair_under_load, machine, (0, np.nan, speed_rpm), names, torque, torque)
+    yield _state(pairs, machine, (0, np.nan, speed_rpm), names, torque, torque)
     if duty_loads is None or strength is None:
         return
     for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
-        machine = inputs.at_torque(load.torque_n_m).build()
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
         layout = machine.layout
         arm = np.where(rows["flank"] == "back", layout.back_arm, 1.0) * layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
         names = rows["mesh"].tolist(), rows["flank"].tolist()
-        yield _state(pair_under_load, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
+        yield _state(pairs, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
 
 
 def _state(
-    pair_under_load: LoadedPair,
+    pairs: FlankPairs,
     machine: Machine,
     key: tuple[int, float, float],
     names: tuple[list[str], list[str]],
@@ -320,10 +332,12 @@ def _state(
     """
     layout = machine.layout
     number, hours, speed_rpm = key
-    of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]
+    meshes = np.array([layout.mesh_names.index(name) for name in names[0]])
+    of = np.array(layout.meshes)[meshes]
+    pair = pair_of_meshes(pairs, layout, meshes, np.array(names[1]) == "back")
     loads = MeshLoads(
-        pinion=np.array([i for i, _ in of]),
-        gear=np.array([g for _, g in of]),
+        pinion=of[:, 0],
+        gear=of[:, 1],
         torque=torque,
         peak=np.maximum(peak, torque),
         pinions=len(layout.pinions),
@@ -338,5 +352,5 @@ def _state(
         flanks=names[1],
         bodies=layout.body_names,
         loads=loads,
-        losses=losses.machine_loss(pair_under_load, loads, speed_rpm * pi / 30),
+        losses=losses.machine_loss(pair, loads, speed_rpm * pi / 30),
     )

@@ -8,7 +8,7 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves, refusing_names
+from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves
 from facegear.build.load import config_of
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
@@ -20,8 +20,6 @@ from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
-NOT_STAGES = {"displaced_contact", "friction_in_motion"}
-"""Names in SPUR_ONLY of an answer from Python that no stage gives, and of an effect of friction."""
 
 
 def make_config(name: str, **changes) -> dict:
@@ -86,7 +84,7 @@ def test_one_angle_for_both_flanks_is_that_angle():
 
 
 def test_spur_only_names_stages():
-    assert set(SPUR_ONLY) - set(STAGES) == NOT_STAGES
+    assert set(SPUR_ONLY) <= set(STAGES)
     assert all(set(keys) <= set(ALL_KINDS) for keys in SPUR_ONLY.values())
 
 
@@ -122,8 +120,8 @@ def test_a_stage_that_takes_spur_teeth_alone_refuses_others_by_key(changes, line
 def test_the_door_refuses_before_any_work(monkeypatch):
     monkeypatch.setitem(SPUR_ONLY, "compliance", ALL_KINDS)
     gearbox = facegear.load(make_config("P1"), results=None)
-    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage displaced_contact"):
-        gearbox.displaced_contact()
+    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage compliance"):
+        gearbox.contact()
 
 
 def test_the_check_of_a_config_names_the_stages_that_refuse(monkeypatch):
@@ -176,12 +174,3 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
     for name in ("tolerances_chunk", "compliance", "contact"):
         monkeypatch.setitem(SPUR_ONLY, name, ())
     require_teeth("tolerances_chunk", config.model_dump(mode="json"))
-
-
-def test_friction_that_disturbs_the_motion_is_refused_where_its_loss_alone_is_not():
-    values = facegear.load("config/friction.yaml").config.model_dump(mode="json")
-    values["tooth_pair"]["taper_angle_deg"] = 1.0
-    for effect, refused in (("excitation", True), ("loss_only", False)):
-        values["lubrication"]["friction"]["effect"] = effect
-        names = refusing_names(["lubrication"], values)
-        assert ("taper_angle_deg" in refused_keys(names, values["tooth_pair"])) == refused

@@ -19,7 +19,8 @@ from facegear.lubrication.friction import BenedictKelley, Constant, Doleschel, S
 from facegear.lubrication.heat import TooHot, running
 from facegear.lubrication.kinematics import slip, spins
 from facegear.lubrication.loss import hat_slip, loss_factors
-from facegear.lubrication.machine_loss import LoadedPair, MeshLoads, machine_loss
+from facegear.lubrication.machine_loss import MeshLoads, machine_loss
+from facegear.lubrication.pairs import LoadedPair
 from facegear.lubrication.reduction import Condition, ReducedPair, reduce_contacts
 from facegear.lubrication.request import STEEL as HEATED
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from references import against, agrees
 from spur_path import c40
 
+from facegear.lubrication.film import shear_heating
 from facegear.lubrication.friction import (
     LIMIT_SOURCES,
     BenedictKelley,
@@ -148,3 +149,21 @@ def test_coefficients_of_the_standards_rise_with_load_and_fall_with_speed_and_vi
         assert model(1.1 * w, v, rho, eta, 0.4e-6) > base
         assert model(w, 1.1 * v, rho, eta, 0.4e-6) < base
         assert model(w, v, rho, 1.1 * eta, 0.4e-6) < base
+
+
+@pytest.mark.parametrize(
+    "model",
+    [Schlenk(), Iso633622(), Iso633620(), BenedictKelley(), Xu(), Doleschel(*[0.08, 0.2, -0.1] * 2, 0.1)],
+)
+def test_oil_that_is_dragged_backwards_rubs_as_forwards(model):
+    """Beside its root a gear may run backwards, faster than the pinion runs: the sum had no power then."""
+    ahead = {"u1": np.array([4.0, 3.0]), "u2": np.array([-7.0, -9.0])}
+    back = {name: -value for name, value in ahead.items()}
+    found = model.coefficient(rubbing(**ahead))
+    assert (found > 0.0).all()
+    assert model.coefficient(rubbing(**back)).tolist() == found.tolist()
+
+
+def test_inlet_shear_of_oil_that_is_dragged_backwards_is_that_forwards():
+    wet = ETA, 0.03, 0.14, 450e9
+    assert shear_heating(0.6e9, -4.0, 7.0, *wet) == shear_heating(0.6e9, 4.0, -7.0, *wet)

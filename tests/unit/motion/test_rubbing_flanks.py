@@ -11,7 +11,7 @@ from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 from facegear.harmonics import stacked_values
-from facegear.machine.disturbances import PARTS, MeshFriction, flank_ratios, friction_rows
+from facegear.machine.disturbances import PARTS, MeshFriction, friction_rows
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import FaceGear, Role, Side, Tilt
 from facegear.machine.linear_model import bearing_matrix, flank_jacobian, mass_diagonal
@@ -46,9 +46,11 @@ def rubbing_machine(size=0.05, layout=None, **options):
 
 
 def test_a_force_along_the_normal_acts_on_the_bodies_as_the_force_of_the_mesh_does():
-    layout = layout_with_axial_bearings()
+    machine = rubbing_machine()
+    layout = machine.layout
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    for rows in (friction_rows(layout), friction_rows(layout, at_output=False)):
+    for at_output in (True, False):
+        rows = friction_rows(layout, machine.linear, None, at_output)
         drive = np.einsum("p,mpd->md", [-cosine, 0.0, -sine, -1.0, 1.0], rows)
         back = np.einsum("p,mpd->md", [cosine, 0.0, -sine, 1.0, -1.0], rows)
         np.testing.assert_allclose(
@@ -57,18 +59,20 @@ def test_a_force_along_the_normal_acts_on_the_bodies_as_the_force_of_the_mesh_do
 
 
 def test_friction_never_turns_the_machine_as_a_whole():
-    layout = layout_with_axial_bearings()
-    rows, turn = friction_rows(layout), rigid_rotation(layout)
+    machine = rubbing_machine()
+    layout = machine.layout
+    rows, turn = friction_rows(layout, machine.linear, None), rigid_rotation(layout)
     np.testing.assert_allclose(rows @ turn, 0.0, atol=1e-13)
     # What the output gives way by is what the moments take.
     np.testing.assert_allclose(
-        friction_rows(layout, at_output=False) @ turn, np.tile([0.0, 0.0, 0.0, 1.0, 1.0], (4, 1)), atol=1e-13
+        friction_rows(layout, machine.linear, None, at_output=False) @ turn,
+        np.tile([0.0, 0.0, 0.0, 1.0, 1.0], (4, 1)),
+        atol=1e-13,
     )
 
 
 def test_the_back_flank_rubs_as_the_mirror_image_that_turns_the_other_way():
-    ratios = rubbing_machine().friction.ratios
-    both = flank_ratios(ratios, np.zeros(4))
+    both = rubbing_machine().friction.flank_ratios(np.zeros(8))
     cycles = np.array([0.13, 0.4, 0.77])
     for part, sign in enumerate((1.0, -1.0, -1.0, 1.0, 1.0)):
         here, mirrored = (
@@ -81,8 +85,8 @@ def test_the_back_flank_rubs_as_the_mirror_image_that_turns_the_other_way():
 def rubbed(model):
     """Friction of each flank on all bodies, written out once more."""
     machine = model.machine
-    ratios = flank_ratios(machine.friction.ratios, machine.phases)
-    rows = np.tile(friction_rows(machine.layout), (2, 1, 1)) @ model.reduction.basis
+    ratios = machine.friction.flank_ratios(np.tile(machine.phases, 2))
+    rows = np.tile(friction_rows(machine.layout, machine.linear, None), (2, 1, 1)) @ model.reduction.basis
 
     def acting(cycles, y, v, pressed):
         at = stacked_values(ratios.reshape(-1, *ratios.shape[2:]), cycles).reshape(rows.shape[:2])
@@ -165,7 +169,7 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
     run = record(system, omega, kicked(model, 0.3), 1, Settings(tolerance=1e-13))
     assert (run.states == 0).any() and (run.states[:, 4:] == 1).any()
     bearing, mass = bearing_matrix(layout), mass_diagonal(layout)
-    jacobian, kept = flank_jacobian(layout), friction_rows(layout, at_output=False)
+    jacobian, kept = flank_jacobian(layout), friction_rows(layout, machine.linear, None, False)
     output = layout.spins.start + 4 * (len(layout.bodies) - 1)
     errors = system.error[system.error_kind]
 
@@ -190,7 +194,7 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
     nodes, weights = np.polynomial.legendre.leggauss(14)
     sums = dict.fromkeys(("power", "friction", "damping", "rotation"), 0.0)
     even, change = 0.0, 0.0
-    ratios = flank_ratios(machine.friction.ratios, machine.phases)
+    ratios = machine.friction.flank_ratios(np.tile(machine.phases, 2))
     ratios = ratios.reshape(-1, *ratios.shape[2:])
     for step in range(run.starts.size):
         length = run.lengths[step]

@@ -1,5 +1,6 @@
 """Helical and tapered pairs through the chain of stages, from contact to the machine's load sharing."""
 
+from dataclasses import fields
 from math import cos, pi, radians, sin, tan
 
 import numpy as np
@@ -13,11 +14,15 @@ from facegear.build.load import config_of
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.contact.summary import BY_FLANK_COLUMNS
+from facegear.lubrication.pairs import FlankPairs
+from facegear.pipeline.stages.friction import loaded_pairs
 from facegear.pipeline.stages.strength import dynamic_root_stress, rating
 from facegear.schema.base import parse
+from facegear.schema.lubrication import LubricationSection
 from facegear.schema.strength import Strength
 from facegear.schema.transmission import Transmission
 from facegear.strength.columns import DUTY_SPECTRUM_COLUMNS
+from facegear.studies.lubricated_teeth import reduction_over
 
 COARSE = {
     "mesh": {"resolution": {"profile_mm": 1.4, "width_mm": 6, "thickness_mm": 4}},
@@ -262,7 +267,7 @@ OIL |= {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["P1", "P2", "P3", "P4"])
 def test_power_of_the_moments_of_friction_is_its_loss(name):
     """Loss comes from sliding at the contacts, moments from friction's forces about both axes."""
     machine = {"lubrication": OIL, "dynamics": {"speed_rpm": 6000}}
@@ -270,8 +275,116 @@ def test_power_of_the_moments_of_friction_is_its_loss(name):
     friction = facegear.load(pair_alone | COARSE | machine, results=None).friction(speed_rpm=6000)
     design = pair_design(parse(ToothPair, public_section(name)))
     ratio = design.pinion.teeth / design.face_gear.teeth
-    levers = friction.content["excitation"].groupby("torque_n_m").mean()
+    table = friction.content["excitation"]
+    drive = table[(table["gear"] == "upper") & (table["flank"] == "drive")]
+    levers = drive.groupby("torque_n_m")[["pinion_lever_mm", "face_gear_lever_mm"]].mean()
     lever = 1e-3 * (levers["pinion_lever_mm"] + ratio * levers["face_gear_lever_mm"])
     power = -lever * levers.index / design.normal_arm * 6000 * pi / 30
     losses = friction.content["by_torque"].set_index("torque_n_m")["loss_w"]
-    np.testing.assert_allclose(power, losses, rtol=0.01)
+    np.testing.assert_allclose(power, losses, rtol=1e-12)
+    local = friction.content["local"]
+    assert all(np.isfinite(values).all() for values in local.values())
+
+
+LUBRICATED = {"lubrication": OIL | {"friction": {"model": "schlenk"}}}
+
+
+def pairs_of(gearbox):
+    """Return the lubricated pairs of all flanks of a machine, from its stored contact."""
+    section = parse(LubricationSection, LUBRICATED["lubrication"])
+    contact, teeth = gearbox.contact().content, parse(ToothPair, gearbox.values["tooth_pair"])
+    return FlankPairs(*loaded_pairs(contact["ltca"], contact["pressure"], section, teeth))
+
+
+def test_other_hand_swaps_loss_and_excitation_of_the_flanks(gearbox_of):
+    """Rule of the mirror, through loss, heat, film and all ratios of friction."""
+    right, left = (pairs_of(gearbox_of("P1", helix_angle_deg=beta)) for beta in (15, -15))
+    bulk = np.array([[120.0, 110.0]])
+    for flank in (0, 1):
+        mine, theirs = (
+            pairs.of_meshes(np.array([0]), np.array([side])).curves(600.0, bulk)
+            for pairs, side in ((right, flank), (left, 1 - flank))
+        )
+        for field in fields(mine):
+            np.testing.assert_allclose(
+                getattr(mine, field.name), getattr(theirs, field.name), rtol=1e-7, err_msg=field.name
+            )
+    drive, back = (right.pairs[number].losses(600.0, bulk).loss_fraction for number in (0, 1))
+    assert np.abs(drive / back - 1.0).max() > 0.01
+    tables = [
+        gearbox_of("P1", helix_angle_deg=beta).with_values(LUBRICATED).friction().content["excitation"]
+        for beta in (15, -15)
+    ]
+    for flank, other in (("drive", "back"), ("back", "drive")):
+        mine, theirs = (
+            table[table["flank"] == side].drop(columns="flank").set_index("gear")
+            for table, side in zip(tables, (flank, other), strict=True)
+        )
+        np.testing.assert_allclose(mine, theirs, atol=1e-7 * np.abs(mine.to_numpy()).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_machine_loses_what_each_loaded_flank_does_and_its_bodies_take_the_heat(gearbox_of, name):
+    gearbox = gearbox_of(name).with_values(LUBRICATED)
+    losses, pairs = gearbox.losses(), pairs_of(gearbox)
+    meshes, bodies = losses.meshes(), losses.content["bodies"]
+    assert set(meshes["flank"]) == {"drive", "back"}  # an idler presses on its back flank
+    for row in meshes.itertuples():
+        number = pairs.numbers[("upper", "lower").index(row.mesh.rpartition("/")[2])][
+            ("drive", "back").index(row.flank)
+        ]
+        bulk = np.array([[row.pinion_bulk_c, row.face_gear_bulk_c]])
+        curves = pairs.pairs[number].losses(6000 * pi / 30, bulk)
+        (fraction,) = curves.at(np.array([row.pinion_torque_n_m]), "loss_fraction")
+        assert row.loss_w == pytest.approx(fraction.item() * row.power_w, rel=1e-6)
+    whole = losses.content["machine"].iloc[0]
+    assert meshes["loss_w"].sum() == pytest.approx(whole["loss_w"], rel=1e-12)
+    assert bodies["heat_w"].sum() == pytest.approx(whole["loss_w"], rel=1e-12)
+    cooled = bodies.assign(w_per_k=np.where(bodies["body"].str.contains("gear"), 200.0, 60.0))
+    np.testing.assert_allclose(cooled["bulk_c"], 100.0 + cooled["heat_w"] / cooled["w_per_k"], rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("bulk", [{"source": "given", "temperature_c": 110}, {"source": "iso_6336_20"}])
+def test_flanks_without_cooling_have_the_bulk_of_their_own_contact(gearbox_of, name, bulk):
+    gearbox = gearbox_of(name).with_values(
+        {"lubrication": OIL | {"bulk": bulk, "friction": {"model": "schlenk"}}}
+    )
+    meshes = gearbox.losses().meshes().set_index("mesh")
+    assert meshes["pinion_bulk_c"].between(100.0, 200.0).all()
+    drive, back = meshes.loc["idler/upper"], meshes.loc["idler/lower"]
+    assert (drive["flank"], back["flank"]) == ("drive", "back")
+    assert drive["power_w"] == pytest.approx(back["power_w"])
+    same = drive["pinion_bulk_c"] == pytest.approx(back["pinion_bulk_c"], abs=1e-6)
+    assert same == (bulk["source"] == "given" or name == "P2")
+    assert (drive["loss_w"] == pytest.approx(back["loss_w"], rel=1e-6)) == (name == "P2")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_slow_motion_with_friction_loses_what_the_machine_at_rest_does(gearbox_of, name):
+    friction = {"model": "constant", "coefficient": 0.01, "effect": "excitation"}
+    changes = {"lubrication": OIL | {"friction": friction}, "dynamics.speed_rpm": 200}
+    gearbox = gearbox_of(name).with_values(changes)
+    meshes = gearbox.losses().meshes()
+    np.testing.assert_allclose(meshes["loss_in_motion_w"], meshes["loss_w"], rtol=0.01)
+    rubbed, without = (
+        one.response().content["bearings"]["mean_n"]
+        for one in (gearbox, gearbox_of(name).with_values({"dynamics.speed_rpm": 200}))
+    )
+    assert np.abs(rubbed - without).max() > 1e-4 * np.abs(without).max()
+
+
+def test_few_places_of_both_flanks_lose_as_all_places_do(gearbox_of):
+    """Samples of tolerances take friction from few places, of the contact of each loaded flank."""
+    contact, values = gearbox_of("P1").contact().content, gearbox_of("P1").values["tooth_pair"]
+    section = parse(LubricationSection, LUBRICATED["lubrication"])
+    reduce_teeth = reduction_over([(section, speed) for speed in (5000.0, 6000.0, 7000.0)])
+    teeth = reduce_teeth(contact["ltca"], contact["pressure"], parse(ToothPair, values))
+    both = np.array([0, 0]), np.array([0, 1])
+    bulk = np.array([[115.0, 108.0], [112.0, 110.0]])
+    few, every = (
+        teeth.pairs(section, every_place).of_meshes(*both).losses(6000 * pi / 30, bulk)
+        for every_place in (False, True)
+    )
+    np.testing.assert_allclose(few.loss_fraction, every.loss_fraction, rtol=1e-6)
+    assert not np.allclose(few.loss_fraction[0], few.loss_fraction[1], rtol=0.01)
