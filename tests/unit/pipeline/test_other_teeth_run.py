@@ -9,14 +9,18 @@ import pytest
 from kinds_of_teeth import public_section
 
 import facegear
+from facegear.build.config import resolved_values
+from facegear.build.load import config_of
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.contact.summary import BY_FLANK_COLUMNS
 from facegear.lubrication.pairs import FlankPairs
 from facegear.pipeline.stages.friction import loaded_pairs
-from facegear.pipeline.stages.strength import rating
+from facegear.pipeline.stages.strength import dynamic_root_stress, rating
 from facegear.schema.base import parse
 from facegear.schema.lubrication import LubricationSection
 from facegear.schema.strength import Strength
+from facegear.schema.transmission import Transmission
 from facegear.strength.columns import DUTY_SPECTRUM_COLUMNS
 from facegear.studies.lubricated_teeth import reduction_over
 
@@ -204,6 +208,33 @@ def test_rating_of_each_flank_is_that_of_the_other_flank_of_the_other_hand(hands
     allowed = ours["rating"].set_index(keys)["allowed_mpa"]
     flanks = [allowed["face_gear", flank, "bending", "finite elements"] for flank in MIRRORED]
     assert abs(flanks[0] / flanks[1] - 1.0) > 0.005  # each has a stress ratio of its own
+
+
+def test_stress_in_motion_under_a_constant_force_is_that_of_the_flank_that_it_loads(hands):
+    gearbox = hands[15]
+    section = parse(ToothPair, gearbox.values["tooth_pair"])
+    values = {"case": "kind", "tooth_pair": gearbox.values["tooth_pair"]} | MACHINE
+    transmission = parse(Transmission, resolved_values(config_of(values))["transmission"])
+    force = 600.0 / pair_design(section).normal_arm
+    cycles = np.arange(16) / 16
+    meshes = {"engine/upper": force, "engine/lower": -force}
+    response = pd.concat(
+        pd.DataFrame({"mesh": mesh, "mesh_cycle": cycles, "elastic_force_n": size})
+        for mesh, size in meshes.items()
+    )
+    summary = pd.DataFrame({"class": ["period-1"]})
+    contents = gearbox.root_stress().content["stress"], gearbox.contact().by_flank()
+    teeth = ToothNumbers.of_design(pair_design(section))
+    found = dynamic_root_stress(
+        response, summary, *contents, section, transmission, teeth, ["upper", "lower"]
+    ).content["dynamic_stress"]
+    expected = gearbox.root_stress().by_flank().query("torque_n_m == 600")
+    largest = expected.groupby(["flank", "body"])["largest_mpa"].max()
+    for row, flank in zip(found.itertuples(), ("drive", "back"), strict=True):
+        for body in ("pinion", "face_gear"):
+            for kind in ("mean", "running", "bound"):
+                stress = getattr(row, f"{body}_{kind}_mpa")
+                assert stress == pytest.approx(largest[flank, body], rel=1e-9)
 
 
 def test_rating_of_tapered_teeth_goes_to_that_of_spur_teeth_in_proportion():
