@@ -41,6 +41,27 @@ def format_number(value: float, digits: int = 3, *, group_digits: bool = True) -
     return _without_end_zeros(f"{value:{',' if group_digits else ''}.{decimals}f}")
 
 
+def begin_with_capital(text: str) -> str:
+    """Write the first letter of a text as a capital, and all others as they are, such as those of names.
+
+    Parameters
+    ----------
+    text : str
+        A sentence or a name.
+
+    Returns
+    -------
+    str
+        The text with a capital at its beginning.
+
+    Examples
+    --------
+    >>> begin_with_capital("engine A")
+    'Engine A'
+    """
+    return text[:1].upper() + text[1:]
+
+
 def count_noun(number: int, singular: str, plural: str = "") -> str:
     """Write a count with its noun.
 

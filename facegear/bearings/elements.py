@@ -1,7 +1,8 @@
 """Ball and roller bearings by their inner dimensions, and the springs that they are for the kernels.
 
 Motions are those of the inner ring against the outer one at the middle of the rolling elements: x, y, z,
-tilt_x, tilt_y. Element j stands at psi_j = first_element + 2 pi j / Z, counted from x towards y.
+tilt_x, tilt_y. Element j stands at psi_j = first_element + 2 pi j / Z, counted from x towards y. Energy,
+force and stiffness are those of this cage, or means over its places within the angle of one element.
 """
 
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array
+from facegear.bearings.point_contact import PointContact, touch_groove
 from facegear.errors import InvalidInput
 
 STEEL_YOUNG, STEEL_POISSON, STEEL_DENSITY = 207e9, 0.3, 7850.0
@@ -26,17 +28,17 @@ CYLINDRICAL_DROP, TAPERED_DROP, LONG_ROLLER_DROP = 0.00035, 0.00045, 0.0005
 a public program."""
 LONG_ROLLER = 2.5
 """Length over diameter from which a cylindrical roller has a straight middle (ISO/TS 16281)."""
-LARGEST_RATIO = 1e3
-"""Largest axis ratio of a contact ellipse that is searched; grooves of 0.501 diameters have 60."""
 
 
 class BallSprings(NamedTuple):
     """Numbers of a ball bearing for `facegear/_kernels/src/bearings/balls.hpp`; m, N, N/m^1.5 and J.
 
+    Stiffness and centrifugal force are divided by the number of places of the cage, m.
+
     Attributes
     ----------
-    cosine, sine : (Z,)
-        Of the angle psi of each ball, from x towards y.
+    cosine, sine : (Z m,)
+        Of the angle psi of each ball in each place of the cage, from x towards y.
     arm, height
         Radius, and z from the plane of the balls, of the centre of curvature of the inner groove.
     rest_radial, rest_axial
@@ -67,10 +69,12 @@ class BallSprings(NamedTuple):
 class RollerSprings(NamedTuple):
     """Numbers of a roller bearing for `facegear/_kernels/src/bearings/rollers.hpp`; m, N, N/m^(10/9) and J.
 
+    Stiffness and centrifugal force are divided by the number of places of the cage, m.
+
     Attributes
     ----------
-    cosine, sine : (Z,)
-        Of the angle psi of each roller, from x towards y.
+    cosine, sine : (Z m,)
+        Of the angle psi of each roller in each place of the cage, from x towards y.
     positions, drops : (n,)
         Middle of each slice along the roller, and drop of the profile of one contact there.
     radius
@@ -101,70 +105,6 @@ class RollerSprings(NamedTuple):
 
 
 @dataclass(frozen=True)
-class PointContact:
-    """Hertzian contact of a ball with a groove.
-
-    Attributes
-    ----------
-    axis_ratio
-        Long over short axis of the ellipse.
-    curvature, modulus
-        Sum of the curvatures of both bodies, 1/m, and E / (1 - nu^2), Pa.
-    """
-
-    axis_ratio: float
-    curvature: float
-    modulus: float
-
-    @property
-    def integrals(self) -> tuple[float, float]:
-        """Complete elliptic integrals K and E of the modulus k with k^2 = 1 - 1 / axis_ratio^2."""
-        parameter = 1.0 - 1.0 / self.axis_ratio**2
-        return float(scipy.special.ellipk(parameter)), float(scipy.special.ellipe(parameter))
-
-    @property
-    def stiffness(self) -> float:
-        """Load of this one contact over (approach of ball and ring)^1.5, by Hertz, N/m^1.5."""
-        first, second = self.integrals
-        length = first * (self.curvature / (self.axis_ratio**2 * second)) ** (1.0 / 3.0)
-        return float(np.pi / np.sqrt(4.5) * self.modulus * length**-1.5)
-
-
-def touch_groove(ball: float, groove: float, pitch_ratio: float, modulus: float) -> PointContact:
-    """Solve Hertz's equation for the axis ratio of a ball's contact with a groove (ISO/TS 16281).
-
-    Parameters
-    ----------
-    ball : float
-        Diameter of the ball, m.
-    groove : float
-        Radius of the groove over the diameter of the ball, dimensionless.
-    pitch_ratio : float
-        gamma / (1 - gamma) at the inner ring, -gamma / (1 + gamma) at the outer one, with gamma as in
-        `RollingBearing.pitch_ratio`; dimensionless.
-    modulus : float
-        E / (1 - nu^2), Pa.
-
-    Returns
-    -------
-    PointContact
-        Its axis ratio, sum of curvatures and modulus.
-    """
-    conformity = 0.5 / groove
-    total = 2.0 + pitch_ratio - conformity
-    difference = (pitch_ratio + conformity) / total
-
-    def excess(ratio: float) -> float:
-        """Return F(rho) of an ellipse with this axis ratio less the given one, dimensionless."""
-        parameter = 1.0 - 1.0 / ratio**2
-        integrals = scipy.special.ellipk(parameter) / scipy.special.ellipe(parameter)
-        return float(1.0 - 2.0 * (integrals - 1.0) / (ratio**2 - 1.0) - difference)
-
-    ratio = scipy.optimize.brentq(excess, 1.0 + 1e-4, LARGEST_RATIO, xtol=1e-14, rtol=1e-15)
-    return PointContact(float(ratio), 2.0 / ball * total, modulus)
-
-
-@dataclass(frozen=True)
 class RollingBearing:
     """Dimensions that ball and roller bearings have; m, rad, Pa, kg/m3 and rad/s.
 
@@ -183,6 +123,9 @@ class RollingBearing:
         Diametral clearance in operation; negative where elements are pressed in.
     first_element
         Angle of the first element from x towards y.
+    cage_places
+        Number of places of the cage over which the bearing is averaged, evenly spaced over the angle of one
+        element from `first_element` on; 1: the elements stand as they are given.
     speed
         Speed of the inner ring for centrifugal forces, the outer ring at rest; 0 leaves them out.
     young, poisson, density
@@ -196,6 +139,7 @@ class RollingBearing:
     direction: int = 1
     clearance: float = 0.0
     first_element: float = 0.0
+    cage_places: int = 1
     speed: float = 0.0
     young: float = STEEL_YOUNG
     poisson: float = STEEL_POISSON
@@ -205,6 +149,8 @@ class RollingBearing:
         """Raise InvalidInput for dimensions that no bearing has."""
         if self.elements < 2:
             raise InvalidInput("number of rolling elements", self.elements, "at least 2")
+        if self.cage_places < 1:
+            raise InvalidInput("places of a bearing's cage", self.cage_places, "at least 1")
         if self.direction not in (1, -1):
             raise InvalidInput("direction of a bearing's thrust", self.direction, "1 or -1")
         for name in ("element_diameter", "young", "density"):
@@ -223,8 +169,9 @@ class RollingBearing:
 
     @property
     def angles(self) -> Array:
-        """Angle of each element from x towards y, (Z,), rad."""
-        return self.first_element + 2.0 * np.pi * np.arange(self.elements) / self.elements
+        """Angle of each element in each place of the cage from x towards y, (Z m,), rad."""
+        count = self.elements * self.cage_places
+        return self.first_element + 2.0 * np.pi * np.arange(count) / count
 
     @property
     def pitch_ratio(self) -> float:
@@ -303,6 +250,8 @@ class BallBearing(RollingBearing):
         outer_length = (self.groove_ratio_outer - 0.5) * ball
         force = self.centrifugal_force(np.pi / 6.0 * ball**3)
         approach = (force / outer.stiffness) ** (2.0 / 3.0)
+        share = 1.0 / self.cage_places
+        in_series = (inner.stiffness ** (-2 / 3) + outer.stiffness ** (-2 / 3)) ** -1.5
         return BallSprings(
             cosine=np.cos(self.angles),
             sine=np.sin(self.angles),
@@ -312,11 +261,11 @@ class BallBearing(RollingBearing):
             rest_axial=self.groove_distance * sine,
             inner_length=inner_length,
             outer_length=outer_length,
-            inner_stiffness=inner.stiffness,
-            outer_stiffness=outer.stiffness,
-            stiffness=(inner.stiffness ** (-2 / 3) + outer.stiffness ** (-2 / 3)) ** -1.5,
-            centrifugal=force,
-            free_energy=-force * (outer_length + 0.6 * approach),
+            inner_stiffness=share * inner.stiffness,
+            outer_stiffness=share * outer.stiffness,
+            stiffness=share * in_series,
+            centrifugal=share * force,
+            free_energy=-share * force * (outer_length + 0.6 * approach),
         )
 
     def stiffness_at(self, load: float) -> float:
@@ -332,7 +281,8 @@ class BallBearing(RollingBearing):
         float
             N/m.
         """
-        return 1.5 * self.springs.stiffness ** (2.0 / 3.0) * load ** (1.0 / 3.0)
+        whole = self.cage_places * self.springs.stiffness
+        return 1.5 * whole ** (2.0 / 3.0) * load ** (1.0 / 3.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -393,6 +343,7 @@ class RollerBearing(RollingBearing):
         volume = 0.25 * np.pi * self.element_diameter**2 * self.effective_length
         force = float(self.centrifugal_force(volume) * cosine)
         position, energy = self._free_roller(force)
+        share = 1.0 / self.cage_places
         return RollerSprings(
             cosine=np.cos(self.angles),
             sine=np.sin(self.angles),
@@ -403,10 +354,10 @@ class RollerBearing(RollingBearing):
             normal_axial=float(sine),
             direction=float(self.direction),
             clearance=0.5 * self.clearance * float(cosine),
-            stiffness=self.slice_stiffness,
-            centrifugal=force,
+            stiffness=share * self.slice_stiffness,
+            centrifugal=share * force,
             free_position=position,
-            free_energy=energy,
+            free_energy=share * energy,
         )
 
     def _free_roller(self, force: float) -> tuple[float, float]:
@@ -448,3 +399,20 @@ class RollerBearing(RollingBearing):
 
 AnyBearing = BallBearing | RollerBearing
 """A rolling bearing of either kind."""
+
+
+def thrown_stiffness(bearing: AnyBearing) -> float:
+    """Return the stiffness of all elements under their centrifugal force, by which positions are rounded.
+
+    Parameters
+    ----------
+    bearing : BallBearing or RollerBearing
+        The bearing.
+
+    Returns
+    -------
+    float
+        N/m; 0 at rest.
+    """
+    force = bearing.cage_places * bearing.springs.centrifugal
+    return bearing.elements * bearing.stiffness_at(force)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
+from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing, thrown_stiffness
 from facegear.bearings.response import (
     ElementLoads,
     element_loads,
@@ -199,8 +199,9 @@ class BearingState:
 
     @property
     def loaded_elements(self) -> int:
-        """Number of elements that touch the inner ring."""
-        return int(self.loads.is_loaded.sum())
+        """Number of elements that touch the inner ring, the largest one of all places of the cage."""
+        is_loaded = self.loads.is_loaded[0].reshape(self.bearing.elements, self.bearing.cage_places)
+        return int(is_loaded.sum(axis=0).max())
 
     @property
     def zone(self) -> float:
@@ -282,7 +283,7 @@ def bearing_curve(bearing: AnyBearing, motion: Array) -> Curvature:
     length = max(largest_gap(bearing), float(np.abs(motion * scale).max()))
     largest = float(np.abs(stiffness / np.outer(scale, scale)).max())
     # Centrifugal force stiffens the outer contacts, by which positions of the elements are rounded.
-    largest = max(largest, bearing.elements * bearing.stiffness_at(bearing.springs.centrifugal))
+    largest = max(largest, thrown_stiffness(bearing))
     rounding = ROUNDINGS * np.finfo(float).eps * largest * length
     return Curvature(
         float(response.energy[0]), force, stiffness, float(np.abs(force / scale).max()), rounding

@@ -12,14 +12,15 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array
-from facegear.bearings.elements import AnyBearing, BallBearing, RollerBearing
+from facegear.bearings.elements import AnyBearing, BallBearing
+from facegear.bearings.equivalent_load import equivalent_load
 from facegear.bearings.response import ElementLoads
 from facegear.errors import InvalidInput
 
 BASIS = {
-    "basic": "ISO 281:2007 (load ratings compared with its printed tables; factors X, Y and e not at hand)",
-    "reference": "ISO/TS 16281:2008 by a public program (standard not at hand)",
-    "modified": "ISO 281:2007, equations (31) to (36), by a public program (standard not at hand)",
+    "basic": "ISO 281:2007 (tables as public programs and catalogues print them; standard not at hand)",
+    "reference": "ISO/TS 16281:2008 by public programs (standard not at hand)",
+    "modified": "ISO 281:2007, equations (31) to (36), by public programs (standard not at hand)",
 }
 """Standard of each life, and what it was compared with."""
 MILLION = 1e6
@@ -33,35 +34,8 @@ BALL_SERIES, ROLLER_SERIES = 10.0 / 9.0, 9.0 / 8.0
 LARGEST_FACTOR = 50.0
 """Largest a_ISO, dimensionless (ISO 281)."""
 RELIABILITY = {90.0: 1.0, 95.0: 0.64, 96.0: 0.55, 97.0: 0.47, 98.0: 0.37, 99.0: 0.25}
-"""Factor a_1, dimensionless, by the reliability in percent (ISO 281:2007, table 12, not at hand)."""
-DEEP_GROOVE = np.array(
-    [
-        (0.172, 0.19, 2.30),
-        (0.345, 0.22, 1.99),
-        (0.689, 0.26, 1.71),
-        (1.03, 0.28, 1.55),
-        (1.38, 0.30, 1.45),
-        (2.07, 0.34, 1.31),
-        (3.45, 0.38, 1.15),
-        (5.17, 0.42, 1.04),
-        (6.89, 0.44, 1.00),
-    ]
-)
-"""Thrust over Z D_w^2 in N/mm2, e and Y of deep groove ball bearings (ISO 281, table 3, not at hand)."""
-DEEP_GROOVE_RADIAL = 0.56
-"""X of deep groove ball bearings, dimensionless, where thrust counts (ISO 281, table 3, not at hand)."""
-ANGULAR_CONTACT = np.array(
-    [
-        (20.0, 0.57, 0.43, 1.00),
-        (25.0, 0.68, 0.41, 0.87),
-        (30.0, 0.80, 0.39, 0.76),
-        (35.0, 0.95, 0.37, 0.66),
-        (40.0, 1.14, 0.35, 0.57),
-        (45.0, 1.34, 0.33, 0.50),
-    ]
-)
-"""Contact angle in degrees, e, X and Y of angular contact ball bearings (ISO 281, table 3, read in a public
-program). Below 20 degrees they depend on the thrust, too, and are left out."""
+"""Factor a_1, dimensionless, by the reliability in percent (ISO 281:2007, table 12, as two public programs
+have it)."""
 
 
 def load_rating(bearing: AnyBearing) -> float:
@@ -103,46 +77,6 @@ def _groove_term(bearing: BallBearing) -> float:
 def _life_exponent(bearing: AnyBearing) -> float:
     """Return the exponent p of the load in L = (C / P)^p: 3 of balls, 10/3 of rollers (ISO 281)."""
     return 3.0 if isinstance(bearing, BallBearing) else 10.0 / 3.0
-
-
-def equivalent_load(bearing: AnyBearing, force: Array) -> Array:
-    """Return the equivalent radial load P of ISO 281, which knows no moments.
-
-    Parameters
-    ----------
-    bearing : BallBearing or RollerBearing
-        The bearing.
-    force : (..., 5) array
-        Loads along x, y, z (N) and about x, y (N m); signs and moments do not count.
-
-    Returns
-    -------
-    (...) array
-        N; not a number under thrust for angular contact ball bearings below 20 or above 45 degrees.
-    """
-    radial, thrust = np.hypot(force[..., 0], force[..., 1]), np.abs(force[..., 2])
-    limit, x, y = _load_factors(bearing, thrust)
-    with np.errstate(invalid="ignore"):  # e is infinite, and a radial load of 0 leaves no number
-        return np.where(thrust <= limit * radial, radial, x * radial + y * thrust)
-
-
-def _load_factors(bearing: AnyBearing, thrust: Array) -> tuple[Array | float, Array | float, Array | float]:
-    """Return e, X and Y at a thrust (...), N: P = X F_r + Y F_a where F_a > e F_r, else P = F_r."""
-    degrees = float(np.degrees(bearing.contact_angle))
-    if isinstance(bearing, RollerBearing):
-        if not bearing.contact_angle:
-            return np.inf, 1.0, 0.0
-        tangent = float(np.tan(bearing.contact_angle))
-        return 1.5 * tangent, 0.4, 0.4 / tangent
-    if not bearing.contact_angle:
-        relative = thrust / (bearing.elements * (1e3 * bearing.element_diameter) ** 2)
-        column, limits, factors = DEEP_GROOVE.T
-        return np.interp(relative, column, limits), DEEP_GROOVE_RADIAL, np.interp(relative, column, factors)
-    angles, *columns = ANGULAR_CONTACT.T
-    if not angles[0] - 1e-9 <= degrees <= angles[-1] + 1e-9:
-        return 0.0, np.nan, np.nan
-    limit, radial, axial = (float(np.interp(degrees, angles, column)) for column in columns)
-    return limit, radial, axial
 
 
 def basic_life(bearing: AnyBearing, load: Array, rating: float | None = None) -> Array:
@@ -426,20 +360,23 @@ def life_together(bearings: Sequence[AnyBearing], lives: Sequence[float]) -> flo
     bearings : sequence of BallBearing or RollerBearing
         The bearings.
     lives : sequence of float
-        Life of each one, any unit; infinite where a bearing carries nothing.
+        Life of each one, any unit; infinite where a bearing carries nothing, not a number where it is not
+        known.
 
     Returns
     -------
     float
-        Unit of the lives: L such that the sum of (L / L_i)^e_i is 1.
+        Unit of the lives: L such that the sum of (L / L_i)^e_i is 1; not a number where one is not known.
     """
     finite = [
         (life, BALL_SERIES if isinstance(bearing, BallBearing) else ROLLER_SERIES)
         for bearing, life in zip(bearings, lives, strict=True)
         if life < np.inf
     ]
+    if np.isnan(lives).any():
+        return float("nan")
     if not finite:
-        return float("nan") if np.isnan(np.sum(lives)) else float("inf")
+        return float("inf")
     shortest = min(life for life, _ in finite)
 
     def excess(logarithm: float) -> float:

@@ -6,7 +6,8 @@ import numpy as np
 
 from facegear._kernels import bearings as kernels
 from facegear.arrays import AnyArray, Array, Mask
-from facegear.bearings.elements import AnyBearing, BallBearing, PointContact
+from facegear.bearings.elements import AnyBearing, BallBearing
+from facegear.bearings.point_contact import PointContact
 from facegear.errors import NotConverged
 from facegear.rigid_body import MOTIONS
 
@@ -45,9 +46,10 @@ class ElementLoads:
 
     Attributes
     ----------
-    inner, outer : (K, Z, n)
-        Loads of each element on inner and outer ring, in n slices (1 for balls), N.
-    inner_angle, outer_angle : (K, Z)
+    inner, outer : (K, Z m, n)
+        Loads of each element on inner and outer ring in each of m places of the cage, in n slices (1 for
+        balls), N.
+    inner_angle, outer_angle : (K, Z m)
         Angle of the normal of both contacts from the radial direction, rad, positive where the inner ring
         presses towards +z.
     """
@@ -59,12 +61,12 @@ class ElementLoads:
 
     @property
     def element_inner(self) -> Array:
-        """Load of each element on the inner ring, (K, Z), N."""
+        """Load of each element on the inner ring, (K, Z m), N."""
         return np.asarray(self.inner.sum(axis=-1))
 
     @property
     def is_loaded(self) -> Mask:
-        """Elements that touch the inner ring, (K, Z)."""
+        """Elements that touch the inner ring, (K, Z m)."""
         return np.asarray(self.element_inner > 0.0)
 
 
@@ -109,21 +111,24 @@ def element_loads(bearing: AnyBearing, motion: AnyArray) -> ElementLoads:
     Returns
     -------
     ElementLoads
-        Loads (K, Z, n), N, and contact angles (K, Z), rad.
+        Loads (K, Z m, n), N, and contact angles (K, Z m), rad, with m places of the cage.
 
     Raises
     ------
     NotConverged
         If an element under centrifugal force finds no position.
     """
-    motions = np.asarray(motion, float)
+    motions, cages = np.asarray(motion, float), bearing.cage_places
+    count = bearing.elements * cages
     if isinstance(bearing, BallBearing):
-        loads = np.zeros((len(motions), bearing.elements, 4))
+        loads = np.zeros((len(motions), count, 4))
         _require_positions(kernels.write_ball_loads(bearing.springs, motions, loads))
         inner, outer, inner_angle, outer_angle = np.moveaxis(loads, -1, 0)
-        return ElementLoads(inner[..., None], outer[..., None], inner_angle, outer_angle)
-    slices = np.zeros((len(motions), bearing.elements, bearing.slices, 2))
+        return ElementLoads(cages * inner[..., None], cages * outer[..., None], inner_angle, outer_angle)
+    slices = np.zeros((len(motions), count, bearing.slices, 2))
     _require_positions(kernels.write_roller_loads(bearing.springs, motions, slices))
+    # The kernels' elements share the stiffness of one among the places of the cage.
+    slices *= cages
     angle = np.full(slices.shape[:2], bearing.direction * bearing.contact_angle)
     return ElementLoads(slices[..., 0], slices[..., 1], angle, angle)
 

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.bearings.elements import thrown_stiffness
 from facegear.bearings.equilibrium import ROUNDINGS
 from facegear.bearings.response import largest_gap, respond
 from facegear.bearings.shaft import RollingShaft, ShaftState, Support, follow_pinion
@@ -136,8 +137,7 @@ class ShaftElement:
         largest = (np.diagonal(stiffness, axis1=1, axis2=2) / arms**2).max(axis=1)
         if not isinstance(bearing, np.ndarray):
             length = np.maximum(length, largest_gap(bearing))
-            thrown = bearing.elements * bearing.stiffness_at(bearing.springs.centrifugal)
-            largest = np.maximum(largest, thrown)
+            largest = np.maximum(largest, thrown_stiffness(bearing))
         return np.abs(force / arms).max(axis=1), ROUNDINGS * np.finfo(float).eps * largest * length
 
     def longest_step(self, outer: Array, inner: Array) -> Array:

@@ -116,16 +116,22 @@ class Config(Section):
         if self.transmission is None or self.transmission.mesh_kinematics == "printed":
             requirement = "loss_only without a transmission whose mesh_kinematics are geometric"
             raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, requirement)
+        if self.transmission.mesh_place == "moving":
+            requirement = "even, where lubrication.friction.effect is excitation"
+            raise ConfigError("transmission.mesh_place", "moving", requirement)
 
     def _check_law(self) -> None:
         """Refuse a load-dependent mesh law where something else takes a constant stiffness.
 
         That is printed kinematics, modes with the average stiffness, a search, and samples with other
-        teeth or with contact of their own.
+        teeth or with contact of their own. Printed kinematics know no coast flanks either.
         """
+        is_printed = self.transmission is not None and self.transmission.mesh_kinematics == "printed"
+        if is_printed and self.mesh_stiffness.coast:
+            raise ConfigError("mesh_stiffness.coast", "given", "none where mesh_kinematics is printed")
         if self.mesh_stiffness.mesh_law == "constant_load":
             return
-        if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
+        if is_printed:
             requirement = "geometric, where mesh_stiffness.mesh_law is load_dependent"
             raise ConfigError("transmission.mesh_kinematics", "printed", requirement)
         if self.modal.stiffness == "average":
@@ -224,7 +230,7 @@ class Config(Section):
         Torques so small that the mesh cannot resolve their contact are not added.
         """
         torques = self.contact.torques_n_m
-        if self.strength is None or self.tooth_pair.pinion is None:
+        if self.strength is None or not self._rates_teeth or self.tooth_pair.pinion is None:
             return self.contact
         design, plan = pair_design(self.tooth_pair), contact_plan(self.contact)
         spacing = node_spacing(mesh_sizes(self.mesh_used, design.module), plan)
@@ -239,13 +245,24 @@ class Config(Section):
     @property
     def _root_stress(self) -> bool:
         """Whether root stress is asked for, by section contact or by a rating."""
-        return self.contact.root_stress or self.strength is not None
+        return self.contact.root_stress or self._rates_teeth
+
+    @property
+    def _rates_teeth(self) -> bool:
+        """Whether a rating of the teeth is asked for."""
+        return self.strength is not None and self.strength.rates_teeth
 
     def _check_strength(self) -> None:
-        """Refuse material cards with other elasticity than the bodies, and elements that root stress
-        cannot use.
+        """Refuse material cards with other elasticity than the bodies, elements that root stress cannot
+        use, and a duty cycle of nothing.
         """
         if self.strength is None:
+            return
+        if not self.strength.rates_teeth:
+            shafts = self.transmission.shafts.values() if self.transmission else ()
+            if not any(shaft.is_rolling for shaft in shafts):
+                requirement = "given, or else transmission.shafts with rolling bearings"
+                raise ConfigError("strength.pinion", None, requirement)
             return
         for body in ("pinion", "face_gear"):
             card = getattr(self.strength, body).card
@@ -332,9 +349,9 @@ def resolved_values(config: Config) -> dict[str, Any]:
     """Return the plain values of a config with what follows from other keys filled in.
 
     That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken,
-    the backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges
-    need, and how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's
-    once by every pinion.
+    the backlash of the dynamics, the speed at which rolling elements are thrown outwards, the gauges and
+    torques that a rating needs, the fillets that gauges need, and how often a turn loads a tooth: an
+    input pinion's once by every face gear, a face gear's once by every pinion.
 
     Parameters
     ----------
@@ -347,12 +364,14 @@ def resolved_values(config: Config) -> dict[str, Any]:
         Plain nested values under the keys of the config, for stages; the config itself is unchanged.
     """
     values = config.model_dump(mode="json")
-    has_given_factors = config.strength is not None and config.strength.load_factors == "given"
+    strength = config.strength
+    rates_teeth = strength is not None and strength.rates_teeth
+    has_given_factors = strength is not None and rates_teeth and strength.load_factors == "given"
     if has_given_factors and (machine := config.transmission) is not None:
         for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
             section = values["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
-    values["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
+    values["contact"]["root_stress"] = config.contact.root_stress or rates_teeth
     values["contact"]["torques_n_m"] = list(config.contact_used.torques_n_m)
     values["mesh"] = config.mesh_used.model_dump(mode="json")
     stiffness = values["mesh_stiffness"]
@@ -360,7 +379,7 @@ def resolved_values(config: Config) -> dict[str, Any]:
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:
         stiffness["torque_n_m"] = config.contact.torques_n_m[-1]
     if config.transmission is not None:
-        complete = with_backlash(config.tooth_pair, config.transmission)
+        complete = with_backlash(config.tooth_pair, config.transmission.at_speed(config.dynamics.speed_rpm))
         values["transmission"] = complete.model_dump(mode="json")
         if complete.casing is not None:
             values["transmission"]["casing"]["content"] = content(complete.casing)

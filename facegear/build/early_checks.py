@@ -19,17 +19,18 @@ from facegear.harmonics import Harmonics
 from facegear.machine.ratings import mesh_table
 from facegear.schema.plausibility import MESH_STIFFNESS, USUAL_FACE_MODULES
 from facegear.schema.strength import Strength
-from facegear.strength.safety import hertz_stress, pinion_form
+from facegear.strength.cylindrical import hertz_stress, pinion_notch, unknown_to_standard
 from facegear.teeth.analysis import (
     PairAnalysis,
     analyse,
     jam,
     jam_in_words,
-    section_contact_ratio,
     summary_in_words,
+    transverse_contact_ratio,
 )
 from facegear.teeth.design import PairDesign
 from facegear.teeth.pitch_line import path_middles, pitch_line_radius
+from facegear.teeth.placement import FLANKS, GEARS, pair_at
 
 POSITIONS = 16
 """Positions of a pitch that are looked at; the smallest gap is refined between them."""
@@ -165,27 +166,32 @@ def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
 def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
     """Return failures and remarks about the rating of a pair, as two lists of lines.
 
-    A failure is the error by which the rating would end. A remark tells of a notch parameter q_s of the
-    pinion's fillet outside NOTCHES, the range of ISO 6336-3. Both are empty without section `strength`.
+    A failure is the error by which the rating would end. Remarks tell of a notch parameter q_s of the
+    pinion's fillet outside NOTCHES, the range of ISO 6336-3, below either flank, and of teeth that the
+    standard does not know. Both are empty without the teeth's part of section `strength`.
     """
-    if values["strength"] is None or refused_keys(["rating"], values["tooth_pair"]):
+    section = values["strength"]
+    if section is None or section["pinion"] is None or refused_keys(["rating"], values["tooth_pair"]):
         return [], []
-    ratio = section_contact_ratio(design)
+    missing_kinds, remarks = unknown_to_standard(design), []
     try:
-        form = pinion_form(design, ratio)
-        hertz_stress(design, ratio, rating_request(Strength.of_config(values["strength"]), design))
+        notches = [pinion_notch(pair_at(design, GEARS[0], flank)) for flank in FLANKS]
+        if not missing_kinds:
+            request = rating_request(Strength.of_config(section), design)
+            hertz_stress(design, transverse_contact_ratio(design), request)
     except FacegearError as error:
         text = str(error)
         return [text if text.startswith("strength") else f"strength: {text}"], []
     low, high = NOTCHES
-    notch = form.notch_parameter
-    if low <= notch < high:
-        return [], []
-    line = (
+    remarks += [
         f"strength: notch parameter q_s = {notch:.3g} of the pinion's fillet, outside the {low:g} to "
         f"{high:g} of ISO 6336-3; tooth_pair.pinion.rack_tip_radius_modules rounds it"
-    )
-    return [], [line]
+        for notch in dict.fromkeys(notches)
+        if not low <= notch < high
+    ]
+    if missing_kinds:
+        remarks.append(f"strength: rated by contact alone, as ISO 6336 does not know {missing_kinds}")
+    return [], remarks
 
 
 def _stiffness(values: Mapping[str, Any]) -> float:

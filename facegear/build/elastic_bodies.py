@@ -1,6 +1,6 @@
 """The bodies of face gears that bend, from the config: their sections in SI units, and what these must be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from math import radians, tan
 from typing import Any, NoReturn
@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.build.teeth_on_body import ON_LINE, TeethOnBody, require_teeth_on_rim, teeth_on_body
 from facegear.build.tooth_pair import ToothPair, pair, pair_design
 from facegear.errors import ConfigError, InvalidInput
 from facegear.parts import section as shapes
@@ -15,6 +16,7 @@ from facegear.parts import wheel
 from facegear.parts.wheel import Patch, require_meshable
 from facegear.schema.gear_body import BodySection
 from facegear.schema.transmission import Transmission
+from facegear.teeth.placement import pair_at
 from facegear.teeth.section_outline import tooth_fill
 
 THINNEST = "thinnest wall of the section"
@@ -32,8 +34,6 @@ KEYS = {
 """Keys of the section by the words in which its shape is refused."""
 MASS_ROUNDING = 1e-6
 """Largest part of the mass of a section by which the mass of the config may lie below it, from rounding."""
-ON_LINE = 1e-9
-"""Distance (m) up to which a corner counts as lying on a line: rounding."""
 
 
 def body_of(section: Transmission, side: str) -> BodySection | None:
@@ -91,27 +91,7 @@ def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
     return any(part.get("body") is not None for part in parts)
 
 
-def pitch_height(teeth: ToothPair) -> float:
-    """Height of the pitch plane over the plane on which the contact analysis clamps the teeth.
-
-    That is rim thickness plus shaper addendum. The plane, the underside of the contact analysis's rim,
-    has height 0 in sections of gear bodies.
-
-    Parameters
-    ----------
-    teeth : ToothPair
-        Section `tooth_pair` of the config, with bodies.
-
-    Returns
-    -------
-    float
-        Height along the gear's axis towards the teeth, m.
-    """
-    assert teeth.face_gear is not None and teeth.shaper is not None
-    return 1e-3 * (teeth.face_gear.rim_thickness_mm + teeth.module_mm * teeth.shaper.addendum_modules)
-
-
-def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
+def contact_patch(section: BodySection, teeth: ToothPair, side: str = "upper") -> Patch:
     """Return the patch of the rim over which the force of one mesh is spread.
 
     The patch lies at the height of the pitch plane. It is `contact_width_pitches` tooth pitches wide.
@@ -122,6 +102,8 @@ def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
         Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
+    side : str
+        Which face gear: `lower` or `upper`.
 
     Returns
     -------
@@ -129,10 +111,10 @@ def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
         Height over height 0 of the section (m), and half its width round the axis (rad).
     """
     pitch = 2.0 * np.pi / teeth.face_gear_teeth
-    return Patch(pitch_height(teeth), 0.5 * section.contact_width_pitches * pitch)
+    return Patch(teeth_on_body(teeth, side).pitch_height, 0.5 * section.contact_width_pitches * pitch)
 
 
-def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
+def body_shape(section: BodySection, teeth: ToothPair, side: str = "upper") -> shapes.Section:
     """Return the cross-section of a body in SI units.
 
     The material is the section's own, else that of the pair's face gear. Teeth are a layer on the rim.
@@ -144,6 +126,8 @@ def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
         Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
+    side : str
+        Which face gear: `lower` or `upper`.
 
     Returns
     -------
@@ -156,23 +140,20 @@ def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
     InvalidInput
         For a cross-section that cannot exist.
     """
-    gear = teeth.face_gear
-    assert gear is not None and teeth.shaper is not None
-    inner, outer = 1e-3 * gear.inner_radius_mm, 1e-3 * gear.outer_radius_mm
-    top = 1e-3 * gear.rim_thickness_mm
-    corners, held_edges = _polygon(section, inner, outer, top)
-    tip = pitch_height(teeth) + 1e-3 * teeth.module_mm * gear.addendum_modules
+    heights = teeth_on_body(teeth, side)
+    corners, held_edges = _polygon(section, heights)
     material = pair(teeth).material("face_gear")
     if (material_section := section.material) is not None:
         material = type(material)(1e9 * material_section.young_modulus_gpa, material_section.poisson_ratio)
-    layer = shapes.Layer(inner, outer, top, tip) if section.teeth else None
+    layer = heights.layer if section.teeth else None
     if layer is not None and section.teeth == "fitted":
-        fill_factor, centre = tooth_fill(pair_design(teeth))
+        fill_factor, centre = tooth_fill(pair_at(pair_design(teeth), side, "drive"))
         layer = replace(layer, density=fill_factor, taper=6.0 * (0.5 - centre))
-    return shapes.Section(corners, held_edges, (inner, outer), material, section.density_kg_per_m3, layer)
+    ends = heights.inner_radius, heights.outer_radius
+    return shapes.Section(corners, held_edges, ends, material, section.density_kg_per_m3, layer)
 
 
-def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
+def fitted_shape(section: BodySection, teeth: ToothPair, side: str = "upper") -> shapes.Section:
     """Return the cross-section of a body, as `body_shape`, with its teeth as stiff as `body.teeth` says.
 
     For `fitted` the hoop and shear stiffness of the layer are fitted to finite elements of the teeth,
@@ -184,6 +165,8 @@ def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
         Section `body` of a face gear.
     teeth : ToothPair
         Section `tooth_pair` of the config, with bodies.
+    side : str
+        Which face gear: `lower` or `upper`.
 
     Returns
     -------
@@ -195,21 +178,21 @@ def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
     NotConverged
         If the stiffness of the teeth is not found.
     """
-    shape = body_shape(section, teeth)
+    shape = body_shape(section, teeth, side)
     if section.teeth != "fitted":
         return shape
     from facegear.parts.tooth_layer import fitted_teeth  # loads finite elements
 
-    return fitted_teeth(shape, pair_design(teeth))
+    return fitted_teeth(shape, pair_at(pair_design(teeth), side, "drive"))
 
 
-def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:
+def _polygon(section: BodySection, heights: TeethOnBody) -> tuple[Array, tuple[bool, ...]]:
     """Return the corners (n, 2) of a body's section and whether the edge after each corner is held (n,).
 
     A corner is distance from the axis and height, m; corners run anticlockwise. They are those of the
     config, else those of a wheel of hub, web and rim, or of a plain ring where hub or web is not given.
-    Held edges are those that the config names, else the bore. `inner` and `outer` are the radii of the
-    teeth and `top` the height of the edge that they stand on, m.
+    Held edges are those that the config names, else the bore. `heights`: those of the teeth, which stand on
+    the rim's front.
     """
     if section.corners_mm:
         config_corners = 1e-3 * np.array(section.corners_mm)
@@ -223,13 +206,14 @@ def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tu
         return corners, bore(corners)
     rim = section.rim
     assert rim is not None
-    rim_inner = inner if rim.inner_radius_mm is None else 1e-3 * rim.inner_radius_mm
-    rim_outer = outer if rim.outer_radius_mm is None else 1e-3 * rim.outer_radius_mm
+    rim_inner = heights.inner_radius if rim.inner_radius_mm is None else 1e-3 * rim.inner_radius_mm
+    rim_outer = heights.outer_radius if rim.outer_radius_mm is None else 1e-3 * rim.outer_radius_mm
     if rim_inner >= rim_outer:
         raise InvalidInput("inner radius of the rim", 1e3 * rim_inner, f"below {1e3 * rim_outer:g} mm")
-    whole = wheel.Rim(rim_inner, rim_outer, 1e-3 * rim.back_mm, top)
+    whole = wheel.Rim(rim_inner, rim_outer, 1e-3 * rim.back_mm, heights.root_at(rim_inner), heights.slope)
     if section.hub is None or section.web is None:
-        corners = shapes.rectangle(rim_inner, rim_outer, whole.back, top)
+        corners = shapes.rectangle(rim_inner, rim_outer, whole.back, whole.front)
+        corners[2, 1] = whole.outer_front
     else:
         hub, web = section.hub, section.web
         corners = wheel.wheel(
@@ -317,7 +301,7 @@ def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Tran
     )
     if tilt is None:
         return
-    centre = pitch_height(teeth) - 1e-3 * tilt.centre_below_pitch_plane_mm
+    centre = teeth_on_body(teeth, side).pitch_height - 1e-3 * tilt.centre_below_pitch_plane_mm
     min_inertia = shapes.inertia_about(shape, centre)
     if tilt.inertia_kg_m2 < min_inertia * (1.0 - MASS_ROUNDING):
         owner_key = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
@@ -344,8 +328,8 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
             "left out beside a body, whose web tilts the rim; hub_tilt is that of its bearings",
         )
     try:
-        shape = body_shape(body, teeth)
-        require_teeth_on_rim(shape, 1e-3 * teeth.face_gear.rim_thickness_mm)
+        shape = body_shape(body, teeth, side)
+        require_teeth_on_rim(shape, teeth_on_body(teeth, side))
         require_meshable(shape.corners)
     except InvalidInput as error:
         _refuse_shape(f"{key}.body", body, error)
@@ -383,65 +367,3 @@ def _thinnest_key(body: BodySection) -> tuple[str, object]:
         value, thinner = min((getattr(body.web, key), key) for key in keys)
         return f"web.{thinner}", value
     return ("corners_mm", list(body.corners_mm)) if body.corners_mm else ("rim", "given")
-
-
-def require_teeth_on_rim(shape: shapes.Section, top: float) -> None:
-    """Require that an edge of the cross-section carries all teeth, with their rim solid below it.
-
-    Parameters
-    ----------
-    shape : shapes.Section
-        Cross-section in SI units.
-    top : float
-        Height of the edge that the teeth stand on: the thickness of the rim, m.
-
-    Raises
-    ------
-    InvalidInput
-        If no edge at this height covers the radii of the teeth, or the rim below them has a gap down to
-        height 0.
-    """
-    inner, outer = shape.teeth
-    words = f"such that it has an edge at height {1e3 * top:g} mm from {1e3 * inner:g} to {1e3 * outer:g} mm"
-    flat = np.abs(shape.edges[:, :, 1] - top).max(axis=1) < ON_LINE
-    covers = (shape.edges[:, :, 0].min(axis=1) < inner + ON_LINE) & (
-        shape.edges[:, :, 0].max(axis=1) > outer - ON_LINE
-    )
-    radii_mm: Sequence[float] = (1e3 * shape.corners[:, 0]).round(6).tolist()
-    if not (flat & covers).any():
-        requirement = f"{words}, on which the teeth stand"
-        raise InvalidInput("inner radius of the rim", [min(radii_mm), max(radii_mm)], requirement)
-    if crosses_rectangle(shape.edges, inner, outer, 0.0, top):
-        raise InvalidInput("corners of the section", "a gap below the teeth", f"{words}, solid to height 0")
-
-
-def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, front: float) -> bool:
-    """Whether an edge runs through the inside of a rectangle; its border, within ON_LINE, does not count.
-
-    Parameters
-    ----------
-    edges : (edges, 2, 2) array
-        Distance from the axis and height (m) of both ends of each edge.
-    inner : float
-        Smallest distance of the rectangle from the axis, m.
-    outer : float
-        Largest distance of the rectangle from the axis, m.
-    back : float
-        Smallest height of the rectangle, m.
-    front : float
-        Largest height of the rectangle, m.
-
-    Returns
-    -------
-    bool
-        True if at least one edge does.
-    """
-    low, high = np.array([inner, back]) + ON_LINE, np.array([outer, front]) - ON_LINE
-    first, way = edges[:, 0], edges[:, 1] - edges[:, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        to_low, to_high = (low - first) / way, (high - first) / way
-    still = way == 0.0
-    inside = (first > low) & (first < high)
-    enter = np.where(still, np.where(inside, 0.0, np.inf), np.minimum(to_low, to_high)).max(axis=1)
-    leave = np.where(still, np.where(inside, 1.0, -np.inf), np.maximum(to_low, to_high)).min(axis=1)
-    return bool((np.maximum(enter, 0.0) < np.minimum(leave, 1.0)).any())

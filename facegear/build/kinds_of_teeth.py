@@ -27,13 +27,9 @@ ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
 SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("pose_surface", "displaced_contact"), ALL_KINDS),
-    **dict.fromkeys(("posed_stress", "rating"), ALL_KINDS),
-    **dict.fromkeys(("dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
-    **dict.fromkeys(("gear_bodies", "gear_waves", "operating_pose"), ALL_KINDS),
-    **dict.fromkeys(("sharing_map", "duty_poses"), ALL_KINDS),
+    "sharing_map": ALL_KINDS,
 }
-"""Keys of section `tooth_pair` that a stage, or an answer from Python, cannot take yet, by its name."""
+"""Keys of section `tooth_pair` that a stage cannot take yet, by its name."""
 
 
 def refused_keys(names: Iterable[str], pair: Mapping[str, Any]) -> dict[str, ConfigError]:

@@ -20,7 +20,7 @@ from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.imperfections import Imperfections, Runout
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Damping, FlankTables, Machine, OpenFlanks
-from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
+from facegear.machine.mesh_phases import PhaseConvention, mesh_phases, place_lags
 from facegear.machine.rolling_seats import rolling_seat
 from facegear.machine.torques import balanced_torques, pinion_torques
 from facegear.parts.shafts import condense_shaft
@@ -133,7 +133,7 @@ def error_lags(section: Transmission, shape: Layout) -> Array | None:
     Returns
     -------
     (meshes,) array or None
-        Lags in mesh periods; None where e(t) lags as the stiffness does, `stiffness_phases`.
+        Lags in mesh periods; None where e(t) lags as the stiffness does, `stiffness_lags`.
     """
     phasing = section.transmission_error.phasing
     if phasing == "mesh":
@@ -205,6 +205,7 @@ def machine(
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
     casing: Arrays | None = None,
+    flank_stiffness: tuple[tuple[Harmonics, Harmonics], ...] | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -228,6 +229,8 @@ def machine(
         that is stiffness times compression.
     casing : mapping of arrays or None
         Arrays of stage casing; None to reduce the casing of the section here, where it has one.
+    flank_stiffness : tuple of pairs of Harmonics, or None
+        Stiffness of drive and back flank at each gear, N/m; None where all are `stiffness`.
 
     Returns
     -------
@@ -258,6 +261,8 @@ def machine(
         casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
+        flank_stiffness=flank_stiffness,
+        has_phase_shifts=section.mesh_place == "moving",
     )
 
 
@@ -292,10 +297,11 @@ def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
     )
 
 
-def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
-    """Return by how much the stiffness of each mesh lags behind that of the reference mesh.
+def stiffness_lags(section: Transmission, teeth: ToothNumbers) -> Array:
+    """Return by how much the stiffness of each flank lags behind that of the reference mesh.
 
-    The lag follows from tooth numbers, angles and clocking of the pinions, and the phase convention.
+    The lag follows from tooth numbers, angles, clocking and axial places of the pinions, and the phase
+    convention.
 
     Parameters
     ----------
@@ -306,13 +312,14 @@ def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
 
     Returns
     -------
-    (meshes,) array
-        Lags in mesh periods, 0 to 1; that of mesh 0, first pinion and first gear, is 0 unless it is the
-        lower of two gears.
+    (2 meshes,) array
+        Lags in mesh periods, drive flanks first; 0 for the first pinion and gear in its place, unless that
+        gear is the lower of two.
     """
     shape = layout(section, teeth)
-    clocking = imperfections(section, shape).clocking
-    return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
+    flaws = imperfections(section, shape)
+    phases = mesh_phases(shape, PhaseConvention(section.phase_convention), flaws.clocking)
+    return np.tile(phases, 2) + place_lags(shape, flaws.outwards)
 
 
 def external_forces(section: Transmission, shape: Layout) -> Array:
@@ -415,8 +422,8 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 def _tilt_inertia(shape: Layout, pinion: int, shaft: ShaftSection) -> float | None:
     """Return the moment of inertia of a pinion on a shaft about a diameter, kg m2; None if it does not tilt.
 
-    Meshes tilt a pinion whose teeth are not spur teeth at right angles. If its inertia is not given, it has
-    half of that about its axis, as a thin disc.
+    A pinion whose teeth are not spur teeth at right angles tilts in any case. If its inertia is not given,
+    it has half of that about its axis, as a thin disc.
     """
     if shaft.tilt_inertia_kg_m2 is None and shape.kind is not None:
         return 0.5 * shape.pinions[pinion].body.inertia

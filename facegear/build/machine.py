@@ -323,7 +323,7 @@ class MachineInputs:
             harmonics=harmonics,
         )
 
-    def at_torque(self, torque_n_m: float) -> Self:
+    def at_torque(self, torque_n_m: float, speed_rpm: float | None = None) -> Self:
         """Return the inputs of the machine with all mean torques scaled to another torque of the input
         pinions.
 
@@ -331,13 +331,17 @@ class MachineInputs:
         ----------
         torque_n_m : float
             Torque on an input pinion by each of its meshes, N m.
+        speed_rpm : float or None
+            Speed of the pinions, rpm, for rolling elements that feel centrifugal force; None: that of the
+            inputs.
 
         Returns
         -------
         MachineInputs
             A copy with the torques of `at_mesh_torque`; friction, law and poses stay.
         """
-        return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
+        section = at_mesh_torque(self.transmission, torque_n_m)
+        return replace(self, transmission=section if speed_rpm is None else section.at_speed(speed_rpm))
 
     def build(self) -> Machine:
         """Build the lumped machine from the config, the mesh stiffness and everything else that was
@@ -358,11 +362,15 @@ class MachineInputs:
         """
         if self.harmonics is None:
             raise ValueError("harmonics: a mesh stiffness is needed to build a machine")
-        series, error = self.harmonics, self.unloaded_error
+        series, error, flanks = self.harmonics, self.unloaded_error, None
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
+            gears = [side.value for side in Side if side.value in self.transmission.face_gears]
+            flanks = stiffness_source.flank_series(series, gears)
             series = stiffness_source.series_of(series)
-        lumped_machine = machine(self.transmission, self.teeth, series, error, casing=self.casing)
+        lumped_machine = machine(
+            self.transmission, self.teeth, series, error, casing=self.casing, flank_stiffness=flanks
+        )
         if self.law is not None:
             lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
         if self.bodies is not None:

@@ -129,6 +129,7 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
         gear_radius=conjugate if given_mm is None else 1e-3 * given_mm,
         kinematics=KINEMATICS[section.mesh_kinematics],
         kind=teeth.kind,
+        middle=teeth.middle,
     )
 
 

@@ -15,7 +15,7 @@ from facegear.schema.motion import (
     SharingMap,
     Sweep,
 )
-from facegear.schema.stiffness import MeshStiffness, given_series
+from facegear.schema.stiffness import MeshStiffness, coast_series, given_series
 from facegear.schema.studies import Jumps
 from facegear.sharing.groups import MapOptions, SharingOptions, SpeedRange
 from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
@@ -276,4 +276,5 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
         order=section.harmonics_kept,
         variation=section.variation,
         given_series=given_series(section),
+        coast_series=coast_series(section),
     )

@@ -1,7 +1,7 @@
 """Rolling bearings in SI units, and shafts on them, from their sections of the config."""
 
 from functools import lru_cache
-from math import radians
+from math import pi, radians
 from string import ascii_uppercase
 
 import numpy as np
@@ -27,17 +27,22 @@ SLICES = 41
 that of 161, and displacements are off by less than 0.2 %."""
 
 
-def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
+BALL_PLACES, ROLLER_PLACES = 8, 6
+"""Places of the cage over which a bearing is averaged, dimensionless. Under radial loads of 0.01 to 0.15 C on
+6210 and NU 210, stiffness across the load is within 1 % of that of 512 places, and motion within 3e-5; time
+grows with them."""
+
+
+def rolling_bearing(section: RollingSection) -> AnyBearing:
     """Return the rolling bearing that a section describes, with ball or line contact by its type.
 
-    Groove ratios and slices that the section leaves open are GROOVE_RATIO and SLICES.
+    Groove ratios and slices that the section leaves open are GROOVE_RATIO and SLICES. Elements feel
+    centrifugal force where `centrifugal` is true and `speed_rpm` is filled in.
 
     Parameters
     ----------
     section : RollingSection
         Section of a rolling bearing, validated.
-    speed : float
-        Speed of the inner ring for centrifugal forces, rad/s; 0 leaves them out.
 
     Returns
     -------
@@ -49,14 +54,15 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
         "pitch_diameter": 1e-3 * section.pitch_diameter_mm,
         "contact_angle": radians(section.contact_angle_deg or 0.0),
         "clearance": 1e-6 * section.clearance_diametral_um,
-        "first_element": radians(section.first_element_deg),
-        "speed": speed,
+        "first_element": radians(section.first_element_deg or 0.0),
+        "speed": (section.speed_rpm or 0.0) * pi / 30.0 if section.centrifugal else 0.0,
     }
     direction = -1 if section.loaded_by == "-z" else 1
     if section.type in BALLS:
         return BallBearing(
             section.elements,
             direction=direction,
+            cage_places=BALL_PLACES if section.is_averaged else 1,
             groove_ratio_inner=section.groove_ratio_inner or GROOVE_RATIO,
             groove_ratio_outer=section.groove_ratio_outer or GROOVE_RATIO,
             **common,
@@ -65,6 +71,7 @@ def rolling_bearing(section: RollingSection, speed: float = 0.0) -> AnyBearing:
     return RollerBearing(
         section.elements,
         direction=direction,
+        cage_places=ROLLER_PLACES if section.is_averaged else 1,
         effective_length=1e-3 * section.effective_length_mm,
         slices=section.slices or SLICES,
         has_profile=section.profile != "straight",
@@ -136,9 +143,11 @@ def _rolling_shaft(section: ShaftSection) -> RollingShaft:
     number = ascii_uppercase.index(preload.bearings[0])
     towards = np.sign(_offsets(section, preload, 1.0)[number, 2])
 
+    mounted = section.at_speed(0.0)  # preload is set at rest
+
     def excess(distance: float) -> float:
         """Return the thrust in the pair, unloaded, less the one asked for, N, at a preload in m."""
-        state = find_shaft_equilibrium(_preloaded(section, distance), np.zeros(MOTIONS))
+        state = find_shaft_equilibrium(_preloaded(mounted, distance), np.zeros(MOTIONS))
         return float(towards * state.forces[number, 2]) - thrust
 
     sections = [section.bearings[ascii_uppercase.index(letter)].rolling for letter in preload.bearings]

@@ -3,10 +3,12 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from facegear.errors import ConfigError
 from facegear.schema.base import parse
 from facegear.schema.cards import Card, Limits
 from facegear.schema.strength import Strength
 from facegear.schema.yaml_file import read_yaml
+from facegear.strength.flank_contacts import normal_arms
 from facegear.strength.materials import (
     BendingLimits,
     DutyBin,
@@ -134,8 +136,15 @@ def rating_request(
     RatingRequest
         Material limits and root roughness (m) by `pinion` and `face_gear`, loads of the flanks, duration
         of the duty cycle (s), and the smallest safeties allowed.
+
+    Raises
+    ------
+    ConfigError
+        Where the section rates bearings alone.
     """
     duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
+    if section.pinion is None or section.face_gear is None:
+        raise ConfigError("strength.pinion", None, "given for a rating of teeth")
     sections = {"pinion": section.pinion, "face_gear": section.face_gear}
     if spectrum is None:
         flanks = tuple(
@@ -143,7 +152,8 @@ def rating_request(
             for (gear, body), turns in zip(sections.items(), (1.0, ratio), strict=True)
         )
     else:
-        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.normal_arm)
+        arms = {flank: section.factor * arm for flank, arm in normal_arms(design).items()}
+        flanks = machine_duty(spectrum, duty, ratio, arms)
     return RatingRequest(
         bodies={
             gear: RatedBody(limits_of(body.card), 1e-6 * body.root_roughness_um)

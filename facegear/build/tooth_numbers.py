@@ -22,7 +22,8 @@ class ToothNumbers:
 
     pinion_arm: torque on the pinion over the force along the drive flank's normal, m, the base radius of spur
     teeth. pressure_angle: of the drive flank in the normal section, rad. kind: what else there is to know of
-    teeth that are not spur teeth at right angles.
+    teeth that are not spur teeth at right angles. middle: place of the middle of the face of spur pinions
+    along their axes, m; None where it is not known, and with a kind, which knows it.
     """
 
     pinion_teeth: int
@@ -30,6 +31,7 @@ class ToothNumbers:
     pinion_arm: float
     pressure_angle: float
     kind: ToothKind | None = None
+    middle: float | None = None
 
     @property
     def pitch_radius(self) -> float:
@@ -57,7 +59,7 @@ class ToothNumbers:
         spur = cls.of_teeth(**sizes, pressure_angle_deg=drive)
         values_of_kind = {key: values.get(key, spur_value) for key, spur_value in SPUR.items()}
         if drive == coast and values_of_kind == SPUR:
-            return spur
+            return replace(spur, middle=_middle(values))
         *degrees, offset_mm = values_of_kind.values()
         coast_angle, helix, taper, shaft = np.radians([coast, *degrees]).tolist()
         return spur.with_kind(
@@ -88,7 +90,7 @@ class ToothNumbers:
         teeth = design.pinion.teeth, design.face_gear.teeth
         numbers = cls(*teeth, design.normal_arm, design.pressure_angle)
         if design.is_spur:
-            return numbers
+            return replace(numbers, middle=design.middle)
         axes = design.shaft_angle, design.offset, design.middle
         return numbers.with_kind(ToothKind(*teeth, design.family.rack, *axes))
 
@@ -139,7 +141,10 @@ def _middle(values: Mapping[str, Any]) -> float | None:
     """Return the place of the middle of the pinion's face along its axis, m, from section `tooth_pair`, or
     from `middle_mm` beside its keys TEETH; None where it is not known.
     """
-    middle = values["middle_mm"] if "middle_mm" in values else face_middle_mm(values)
+    if "middle_mm" in values or "face_gear" not in values:
+        middle = values.get("middle_mm")
+    else:
+        middle = face_middle_mm(values)
     return None if middle is None else 1e-3 * middle
 
 
@@ -154,9 +159,6 @@ def machine_teeth(tooth_pair: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict[str, Any]
-        Its keys TEETH; where the teeth are not spur teeth at right angles `middle_mm` as well.
+        Its keys TEETH, and `middle_mm` of the pinion.
     """
-    teeth = {key: tooth_pair[key] for key in TEETH}
-    if ToothNumbers.of_config({**teeth, "middle_mm": None}).kind is None:
-        return teeth
-    return {**teeth, "middle_mm": face_middle_mm(tooth_pair)}
+    return {**{key: tooth_pair[key] for key in TEETH}, "middle_mm": face_middle_mm(tooth_pair)}

@@ -22,6 +22,10 @@ HOLDING_LIMIT = 1e-9
 NEGATIVE = 1e-8
 """Negative eigenvalue over the largest, rows scaled to a unit diagonal, up to which it counts as rounding."""
 
+VALID = 0.5
+"""Part of the highest mode with seats and feet held up to which modes and vibration hold, dimensionless: a
+rule of thumb of component mode synthesis."""
+
 
 @dataclass(frozen=True, eq=False)
 class Foot:
@@ -107,6 +111,11 @@ class MountedCasing:
     def modes(self) -> int:
         """Number of coordinates that are modes; they stand last."""
         return int(self.frequencies.size)
+
+    @property
+    def valid_up_to(self) -> float:
+        """Frequency up to which the kept modes hold, Hz: VALID of the highest; infinite without modes."""
+        return VALID * float(self.frequencies[-1]) if self.modes else float("inf")
 
     @cached_property
     def own_frequencies(self) -> Array:

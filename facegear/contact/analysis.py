@@ -166,8 +166,14 @@ class ContactAnalysis:
 
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
-        """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position."""
-        return [ltca_table(*result) for result in self.results]
+        """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position; for
+        teeth other than spur ones WRENCH_QUANTITIES follow.
+        """
+        tables = [ltca_table(*result) for result in self.results]
+        if self.models[0].design.is_spur:
+            return tables
+        on = ["torque_n_m", "position"]
+        return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
@@ -215,7 +221,7 @@ class ContactAnalysis:
         designs = [model.design for model in self.models]
         if designs[0].is_spur:
             return by_flank(self.by_torque, designs, self.numbers)
-        tables = zip(self.by_torque, self.ltca, self.wrenches, strict=True)
+        tables = zip(self.by_torque, self.ltca, strict=True)
         return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)
 
     @cached_property

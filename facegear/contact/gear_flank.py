@@ -13,7 +13,7 @@ from facegear.contact.flanks import flank_pair
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
 from facegear.contact.root_gauges import RootGauges, root_gauges, section_errors
-from facegear.contact.teeth import ContactSide, elastic_tooth
+from facegear.contact.teeth import ContactSide, elastic_tooth, is_mirrored_across
 from facegear.errors import InvalidInput
 from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.mesh_quality import require_right_side_out
@@ -203,14 +203,36 @@ def gear_flank(
     FacegearError
         If the mesh cannot be factorised.
     """
-    tooth = BUILDERS[body](design, sizes)
+    return _flank_of(design, BUILDERS[body](design, sizes), sizes, material, plan, section)
+
+
+def _flank_of(
+    design: PairDesign,
+    tooth: FeTooth,
+    sizes: MeshSizes,
+    material: Material,
+    plan: ContactPlan,
+    section: bool,
+    image: GearFlank | None = None,
+) -> GearFlank:
+    """Return `gear_flank` of a tooth that is meshed already.
+
+    `image` is the flank of a tooth that is this one in a mirror across the face, whose compliance is taken.
+    """
     require_right_side_out(tooth)
     elastic, side = elastic_tooth(design, tooth, material)
-    teeth, neighbours, ends = extent(tooth, body, plan)
+    teeth, neighbours, ends = extent(tooth, tooth.body, plan)
     gauges, rows = None, None
     if plan.root_stress:
-        errors = section_errors(design, body, BUILDERS[body], sizes, material) if section else None
+        is_estimated, build = section and image is None, BUILDERS[tooth.body]
+        errors = section_errors(design, tooth.body, build, sizes, material) if is_estimated else None
         gauges, rows = root_gauges(tooth, material, errors)
+    if image is not None:
+        shape = (0, 0, 0)
+        if gauges is not None and image.gauges is not None:
+            gauges = replace(gauges, error=image.gauges.error[::-1])
+            shape = gauges.position.shape[:3]
+        return GearFlank(side, image.compliance.reverse_along_face(shape), gauges)
     compliance = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
     return GearFlank(side, compliance, gauges)
 
@@ -291,7 +313,9 @@ def gear_flanks(
 ) -> list[GearFlank]:
     """Compute the flanks of a body in all pairs of bodies that both gears' both flanks need.
 
-    Coast flanks are the drive flanks of the mirrored pair, with a mesh of their own.
+    Coast flanks are the drive flanks of the mirrored pair, with a mesh of their own. Where that mesh is
+    another one in a mirror across the face, as that of a helical pinion without taper is, the two have one
+    compliance.
 
     Parameters
     ----------
@@ -319,10 +343,14 @@ def gear_flanks(
         As `gear_flank` does.
     """
     flanks: dict[PairDesign, GearFlank] = {}
+    teeth: dict[PairDesign, FeTooth] = {}
     keys = [_mesh_key(pair, body) for pair in nominal_pairs(design, gears)]
     for key, pair in zip(keys, nominal_pairs(design, gears), strict=True):
         if key not in flanks:
-            flanks[key] = gear_flank(pair, body, sizes, material, plan)
+            tooth = BUILDERS[body](pair, sizes)
+            images = [flanks[other] for other in teeth if is_mirrored_across(tooth, teeth[other])]
+            teeth[key] = tooth
+            flanks[key] = _flank_of(pair, tooth, sizes, material, plan, True, next(iter(images), None))
     return [flanks[key] for key in keys]
 
 

@@ -141,7 +141,7 @@ def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
     torque, in the signs of `touching_reactions`; 0 without load.
     """
     errors = surface.design.assembly
-    force, moment = np.split(contact_wrench(surface, result), 2)
+    force, moment = np.split(contact_wrenches(surface, [result])[0], 2)
     return np.array([force[0], -force[2], -(moment[0] + errors.gear_axial * force[1])])
 
 
@@ -165,43 +165,47 @@ def wrench_table(surface: PinionSurface, results: Sequence[LoadedPosition]) -> p
     Returns
     -------
     pd.DataFrame
-        Columns WRENCH_COLUMNS: `contact_wrench`, and the force on the pinion outwards along its own axis.
+        Columns WRENCH_COLUMNS: `contact_wrenches`, and the force on the pinion outwards along its own axis.
     """
     outwards = _pinion_motion(surface.design, np.zeros(1), np.zeros(1)).directions(
         np.array([[0.0, 1.0, 0.0]])
     )[0, 0]
-    wrenches = [contact_wrench(surface, result) for result in results]
-    rows = [
-        (result.torque, result.position, *wrench, -wrench[:3] @ outwards)
-        for result, wrench in zip(results, wrenches, strict=True)
-    ]
-    return pd.DataFrame(rows, columns=list(WRENCH_COLUMNS))
+    wrenches = contact_wrenches(surface, results)
+    loads = np.array([(result.torque, result.position) for result in results]).reshape(-1, 2)
+    columns = np.column_stack([loads, wrenches, -wrenches[:, :3] @ outwards])
+    return pd.DataFrame(columns, columns=list(WRENCH_COLUMNS))
 
 
-def contact_wrench(surface: PinionSurface, result: LoadedPosition) -> Array:
-    """Compute force and moment of the pinion on the gear at one position and torque, without friction.
+def contact_wrenches(surface: PinionSurface, results: Sequence[LoadedPosition]) -> Array:
+    """Compute force and moment of the pinion on the gear at positions and torques, without friction.
 
     Parameters
     ----------
     surface : PinionSurface
         Contact surface of the pinion.
-    result : LoadedPosition
-        Contact at one position and torque.
+    results : Sequence[LoadedPosition]
+        Contact by position and torque, r of them.
 
     Returns
     -------
-    (6,) array
+    (r, 6) array
         Force, N, and moment about the origin, N m, in the mesh frame; 0 without load.
     """
-    design, wrench = surface.design, np.zeros(6)
-    for spot in result.spots:
-        points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
-        angle = pinion_angle(design, result.position)
-        motion = _pinion_motion(design, angle[None], np.array([float(spot.tooth)]))
-        force = spot.force[:, None] * motion.directions(points.normal)[0]
-        wrench[:3] += force.sum(axis=0)
-        wrench[3:] += np.cross(motion.points(points.position)[0], force).sum(axis=0)
-    return wrench
+    design, wrenches = surface.design, np.zeros((len(results), 6))
+    spots = [(row, result.position, spot) for row, result in enumerate(results) for spot in result.spots]
+    if not spots:
+        return wrenches
+    rows, positions, of_spots = zip(*spots, strict=True)
+    count = [spot.hats.size for spot in of_spots]
+    hats, force = (np.concatenate([getattr(spot, name) for spot in of_spots]) for name in ("hats", "force"))
+    points = surface.exact(np.stack(np.divmod(hats, surface.shape[1]), axis=-1).astype(float))
+    teeth = np.array([float(spot.tooth) for spot in of_spots])
+    motion = _pinion_motion(design, pinion_angle(design, positions), teeth)
+    motion = motion.only(np.repeat(np.arange(len(spots)), count))
+    forces = force[:, None] * motion.directions(points.normal[:, None])[:, 0]
+    moments = np.cross(motion.points(points.position[:, None])[:, 0], forces)
+    np.add.at(wrenches, np.repeat(rows, count), np.concatenate([forces, moments], axis=1))
+    return wrenches
 
 
 def _pinion_motion(design: PairDesign, phi1: Array, tooth: Array) -> RigidMotion:

@@ -42,11 +42,12 @@ BY_FLANK_COLUMNS = (
 )
 """Columns of table `by_flank`: the flank with its assembly errors, and COLUMNS."""
 
-WRENCH_MEANS = (
+WRENCH_QUANTITIES = (
     *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
     "pinion_axial_n",
 )
-"""Columns of a table of wrenches whose means over a pitch `by_flank` adds for teeth other than spur ones."""
+"""Columns of the wrench of the pinion on the gear, which the contact table of teeth other than spur ones has;
+`by_flank` has their means over a pitch."""
 
 
 def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
@@ -67,7 +68,7 @@ def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
     return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
 
 
-def with_wrenches(by_torque: pd.DataFrame, ltca: pd.DataFrame, wrenches: pd.DataFrame) -> pd.DataFrame:
+def with_wrenches(by_torque: pd.DataFrame, ltca: pd.DataFrame) -> pd.DataFrame:
     """Add the largest share of a pair of teeth and the mean wrench to a table of `by_torque`.
 
     Parameters
@@ -75,17 +76,15 @@ def with_wrenches(by_torque: pd.DataFrame, ltca: pd.DataFrame, wrenches: pd.Data
     by_torque : pd.DataFrame
         Result of `by_torque`.
     ltca : pd.DataFrame
-        Contact table, columns LTCA_COLUMNS.
-    wrenches : pd.DataFrame
-        Wrench of the pinion on the gear at the same torques and positions, columns WRENCH_COLUMNS.
+        Contact table, columns LTCA_COLUMNS and WRENCH_QUANTITIES.
 
     Returns
     -------
     pd.DataFrame
-        The table with columns `load_share_max` and WRENCH_MEANS.
+        The table with columns `load_share_max` and WRENCH_QUANTITIES.
     """
     shares = ltca[list(SHARES)].max(axis=1).groupby(ltca["torque_n_m"]).max().rename("load_share_max")
-    means = wrenches.groupby("torque_n_m")[list(WRENCH_MEANS)].mean()
+    means = ltca.groupby("torque_n_m")[list(WRENCH_QUANTITIES)].mean()
     return by_torque.join(shares, on="torque_n_m").join(means, on="torque_n_m")
 
 

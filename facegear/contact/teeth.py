@@ -141,7 +141,7 @@ def elastic_tooth(
         left=number[tooth.cut_left],
         right=number[tooth.cut_right],
         turn=tooth.rotated(np.eye(3), tooth.pitch).T,
-        mirror=mirror if _symmetric(tooth) else mirror[:0],
+        mirror=mirror if is_mirrored_across(tooth, tooth) else mirror[:0],
     )
     return body, surface
 
@@ -154,13 +154,28 @@ def _mirror_nodes(tooth: FeTooth) -> Integers:
     return np.arange(len(tooth.nodes)).reshape(planes, -1)[::-1].ravel()
 
 
-def _symmetric(tooth: FeTooth) -> bool:
-    """Whether nodes are mirror images about the middle of the face, as those of a pinion without
-    modifications are.
+def is_mirrored_across(tooth: FeTooth, other: FeTooth) -> bool:
+    """Tell whether a tooth is another one in a mirror across the middle of the face.
+
+    A pinion without modifications is its own image if its teeth are spur ones; if they are helical, its image
+    has the other hand.
+
+    Parameters
+    ----------
+    tooth, other : FeTooth
+        Meshes of two teeth of the same body.
+
+    Returns
+    -------
+    bool
+        True where all nodes are images of each other to rounding.
     """
-    image = tooth.nodes * np.array([1.0, -1.0, 1.0])
-    image[:, 1] += tooth.nodes[:, 1].min() + tooth.nodes[:, 1].max()
-    return bool(np.abs(tooth.nodes[_mirror_nodes(tooth)] - image).max() <= ROUNDING * np.abs(image).max())
+    if tooth.nodes.shape != other.nodes.shape or tooth.hexes.shape != other.hexes.shape:
+        return False
+    image = other.nodes * np.array([1.0, -1.0, 1.0])
+    image[:, 1] += other.nodes[:, 1].min() + other.nodes[:, 1].max()
+    apart = np.abs(tooth.nodes[_mirror_nodes(tooth)] - image).max()
+    return bool(apart <= ROUNDING * np.abs(image).max())
 
 
 def pinion_points(

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from facegear.build.kinds_of_teeth import require_kind
 from facegear.door.case import Case, drop_none
 from facegear.errors import ConfigError, FacegearError, extras_named
 from facegear.pipeline.outcome import Outcome
@@ -92,8 +91,9 @@ def displaced_contact(
     ----------
     pinion : Mapping[str, float] | None
         Any of x_um, y_um, z_um, tilt_x_deg, tilt_y_deg and theta_deg; 0 unless given. x along the tangent
-        as the upper gear's teeth move, y along the gears' axis towards the upper gear, z outwards along
-        the pinion; tilts about the middle of its face, theta as it drives.
+        as the upper gear's teeth move, z outwards along the pinion, y square to both, with axes at a right
+        angle along the gears' axis towards the upper gear; tilts about the middle of its face, theta as it
+        drives.
     face_gear : Mapping[str, float] | None
         The same keys (um, deg) for the gear: x towards azimuth 0, y a quarter turn further, z from the
         lower to the upper gear; tilts about the point of its axis that `tilt` or `hub_tilt` says, or in
@@ -125,7 +125,6 @@ def displaced_contact(
             loaded_displaced_contact,
         )
 
-    require_kind(("displaced_contact",), self._values["tooth_pair"])
     for body, displacement in {"pinion": pinion, "face_gear": face_gear}.items():
         if displacement is not None and not isinstance(displacement, Mapping):
             raise FacegearError(f"{body} = {displacement!r}: must be a mapping such as {{'x_um': 10}}")

@@ -14,6 +14,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import numpy as np
 
 from facegear.arrays import AnyArray
+from facegear.errors import InvalidInput
 from facegear.io.atomic import atomic_path
 from facegear.machine.flanks import mesh_contacts
 from facegear.machine.machine import Machine
@@ -84,7 +85,14 @@ def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
     -------
     Path
         The path.
+
+    Raises
+    ------
+    InvalidInput
+        Where the meshes of the machine move in their cycle.
     """
+    if machine.has_phase_shifts:
+        raise InvalidInput("transmission.mesh_place", "moving", "even, where an FMU is written")
     path, model = Path(path), build_model(machine)
     header = _header(model, speed_rpm)
     token = hashlib.sha256(header.encode()).hexdigest()[:32]

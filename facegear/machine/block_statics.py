@@ -30,7 +30,7 @@ class Springs(NamedTuple):
     """One-sided flanks, bearings and forces of a machine, as the compiled solver takes them. SI units.
 
     All n unknowns are lengths: x, y and turn of each of P pinions, then w unknowns of every gear, then
-    any others. There are F flanks.
+    any others, such as the places along their axes of pinions that flanks push there. There are F flanks.
 
     Attributes
     ----------
@@ -117,8 +117,9 @@ def settle_all(
 class StaticBlocks:
     """The compiled problem of a machine, and how its unknowns map to the degrees of freedom.
 
-    The pinions' motion along their own axes is left out, as no mesh feels it. If one gear may rock, another
-    that may not is given tilts of no length. Coordinates beside those of the layout come last.
+    The motion of spur pinions along their own axes is left out, as no mesh feels it; that of others stands
+    behind the gears' unknowns. If one gear may rock, another that may not is given tilts of no length.
+    Coordinates beside those of the layout come last.
 
     Attributes
     ----------
@@ -193,7 +194,7 @@ def _unloaded_blocks(machine: Machine) -> StaticBlocks | None:
     """
     layout, linear = machine.layout, machine.linear
     stiffness, rows, seat_motions = linear.stiffness, linear.rows, None
-    coordinates, scale = _select_unknowns(layout, linear.lengths)
+    coordinates, scale = _select_unknowns(layout, linear.lengths, rows)
     if machine.casing is not None and machine.casing.frequency_limit is None:
         seat_motions = machine.casing.seat_motion(linear, machine.drive_line)
         stiffness, rows = seat_motions.relative_stiffness(stiffness), seat_motions.along_relative(rows)
@@ -250,11 +251,12 @@ def _springs(layout: Layout, coordinates: Integers, scale: Array, bearing: Array
     )
 
 
-def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Array]:
+def _select_unknowns(layout: Layout, every_length: Array, rows: Array) -> tuple[Integers, Array]:
     """Return the degree of freedom of each unknown (n,), and what 1 m of it is in m or rad (n,).
 
-    Unknowns are x, y, theta of each pinion, then x, y, z, theta and tilts of each gear, then coordinates
-    added to the layout. `every_length` (dof,): length of a unit of each degree of freedom, m. If some
+    Unknowns are x, y, theta of each pinion, then x, y, z, theta and tilts of each gear, then z of each pinion
+    that a flank pushes along its axis, then coordinates added to the layout. `every_length` (dof,): length of
+    a unit of each degree of freedom, m; `rows` (flanks, dof): derivative of the flanks' deflections. If some
     gear tilts, the others get tilts of scale 0.
     """
     coordinates: list[int] = []
@@ -269,10 +271,9 @@ def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Arr
             at = layout.first_tilts[body - pinions if rocks else layout.tilting[0]]
             coordinates += [at, at + 1]
             lengths += 2 * [every_length[at] if rocks else np.inf]
-    added_coordinates = np.arange(layout.dof, every_length.size)
-    return np.append(coordinates, added_coordinates), 1.0 / np.append(
-        lengths, every_length[added_coordinates]
-    )
+    axial = DOF_PER_BODY * np.arange(pinions) + 2
+    more = np.append(axial[rows[:, axial].any(axis=0)], np.arange(layout.dof, every_length.size))
+    return np.append(coordinates, more), 1.0 / np.append(lengths, every_length[more])
 
 
 def _windows(layout: Layout, size: int, by_gear: bool) -> tuple[Integers, Integers]:

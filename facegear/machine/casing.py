@@ -18,7 +18,7 @@ from facegear.arrays import Array, Integers
 from facegear.casing.mounted import MountedCasing
 from facegear.casing.reduction import MOTIONS as SEAT_MOTIONS
 from facegear.errors import InvalidInput
-from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start, keep_slow_modes
+from facegear.machine.casing_coordinates import CASING, SeatMotion, casing_start
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.kinematics import tilt_row
 from facegear.machine.layout import DOF_PER_BODY, Layout
@@ -46,9 +46,9 @@ class Casing:
     bearing_places : mapping of int to array
         Places of the bearings of these shafts along the pinion's axis from the gears' axis, (bearings,), m.
     frequency_limit : float or None
-        Modes of the casing below the bodies, which stand still, are coordinates up to this frequency, Hz;
-        motions of other modes and without mass follow statically, as motion in time takes them. None: seats
-        and modes of the mounted casing are the coordinates.
+        Frequency, Hz, up to which motions of the casing are coordinates, while the others follow statically,
+        as motion in time takes them (`casing_coordinates.keep_slow_motions`). None: seats and modes of the
+        mounted casing are the coordinates.
     """
 
     layout: Layout
@@ -86,9 +86,11 @@ class Casing:
         Returns
         -------
         Casing
-            With the motions of seats and feet alone.
+            With all motions of seats and feet as coordinates.
         """
-        return replace(self, mounted=self.mounted.without_modes()) if self.mounted.modes else self
+        if not self.mounted.modes and self.frequency_limit is None:
+            return self
+        return replace(self, mounted=self.mounted.without_modes(), frequency_limit=None)
 
     @cached_property
     def strain_between_seats(self) -> Array:
@@ -234,8 +236,6 @@ class Casing:
     def flank_rows(self, line: DriveLine | None = None) -> Array:
         """Return the derivatives of the flanks' deflections by the casing: bodies that tilt with their seats.
 
-        Spur teeth at right angles turn no pinion about a diameter.
-
         Parameters
         ----------
         line : DriveLine or None
@@ -253,7 +253,7 @@ class Casing:
                 by_tilts = [tilt_row(layout, frame, (i, g), 0.0) for frame in layout.flank_frames[g]]
                 rows[:, mesh] = np.array(by_tilts) @ self.gear_tilts(g)
             if (
-                layout.kind is not None
+                layout.meshes_tilt_pinions
                 and i in self.bearing_seats
                 and (line is None or i not in line.tilting)
             ):
@@ -291,7 +291,7 @@ class Casing:
             - base_model.mass_damping * mass[old:, old:]
         )
         zeros = np.zeros(new)
-        model = replace(
+        return replace(
             base_model,
             labels=(*base_model.labels, *(f"{CASING}:{letter}" for letter in self.mounted.letters)),
             mass=mass,
@@ -304,7 +304,6 @@ class Casing:
             spin=_pad_spin(base_model.spin, new),
             seat_tilts=self._seat_tilts(old, line),
         )
-        return model if self.frequency_limit is None else keep_slow_modes(model, self.frequency_limit)
 
     def seat_motion(self, linear: LinearModel, line: DriveLine | None) -> SeatMotion:
         """Return the change of unknowns of a machine on the casing to motions against its seats.

@@ -6,12 +6,14 @@ import numpy as np
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.casing.reduction import own_modes
-from facegear.machine.linear_model import LinearModel, Spin
+from facegear.machine.linear_model import CondensedCasing, LinearModel, Spin
 
 CASING = "casing"
 """Body of the casing's coordinates, before the colon in their labels."""
 CASING_MODE = 0.5
 """Part of the kinetic energy in the casing from which a mode is one of the casing: a free choice."""
+RANK = 1e-10
+"""Part of the largest singular value up to which a direction of the casing is one that no flank feels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +106,11 @@ def casing_motion(linear: LinearModel, displacements: AnyArray) -> AnyArray:
     (..., c) array
         Motions of seats, feet and modes, m and rad.
     """
+    if linear.condensed_casing is not None:
+        motion: AnyArray = (
+            displacements @ linear.over_all(linear.condensed_casing.casing).T + linear.condensed_casing.rest
+        )
+        return motion
     return displacements[..., np.array([label.startswith(f"{CASING}:") for label in linear.labels])]
 
 
@@ -123,17 +130,18 @@ def casing_start(linear: LinearModel) -> int:
     return next(n for n, label in enumerate(linear.labels) if label.startswith(f"{CASING}:"))
 
 
-def keep_slow_modes(model: LinearModel, limit: float) -> LinearModel:
-    """Return a model whose casing has its slow modes as coordinates, while its other motions follow
-    statically.
+def keep_slow_motions(model: LinearModel, limit: float) -> LinearModel:
+    """Return a model whose casing has slow motions as coordinates, while the others follow statically.
 
-    The modes are those of the casing on its feet and bearings with all bodies held. Flanks feel no other
-    motion of the casing but through the bodies: gears that tilt with their seats lose what fast modes give.
+    All bodies held, the motions of the casing part into two kinds (Craig and Bampton 1968). The first answer
+    the flanks, which move the casing beside the bodies where gears tilt with their seats: these are all kept.
+    The others are modes with the first kind held, kept up to the limit. Whatever flanks and bodies load, the
+    casing rests where all of its coordinates have it.
 
     Parameters
     ----------
     model : LinearModel
-        Linear model with a casing behind all other coordinates.
+        Linear model with a casing behind all other coordinates, the tangents of rolling bearings included.
     limit : float
         Highest frequency of the modes, Hz.
 
@@ -143,18 +151,22 @@ def keep_slow_modes(model: LinearModel, limit: float) -> LinearModel:
         Coordinates of bodies stay.
     """
     first = casing_start(model)
-    stiffness, mass = model.stiffness[first:, first:], model.mass[first:, first:]
-    frequencies, shapes = own_modes(stiffness, mass)
-    slow = shapes[:, frequencies <= limit]
+    stiffness = model.stiffness[first:, first:]
+    slow = _slow_motions(model, limit)
     motions = np.zeros((model.size, first + slow.shape[1]))
     motions[:first, :first] = np.eye(first)
-    # The casing follows the bodies statically; its slow modes are what it moves beside that.
+    # The casing follows the bodies statically; its slow motions are what it does beside that.
     motions[first:, :first] = -np.linalg.solve(stiffness, model.stiffness[first:, :first])
     motions[first:, first:] = slow
     spin = model.spin
     if spin is not None:
         parts = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
         spin = Spin(*(motions.T @ part @ motions for part in parts))
+    loads, tangent_loads = model.loads[first:], model.tangent_loads
+    rest = np.linalg.solve(stiffness, loads)
+    rest -= slow @ np.linalg.solve(slow.T @ stiffness @ slow, slow.T @ loads)
+    if tangent_loads is not None:
+        tangent_loads = tangent_loads[:first] - model.stiffness[:first, first:] @ rest
     labels = [f"{CASING}:motion {number}" for number in range(1, slow.shape[1] + 1)]
     assert model.seat_tilts is not None
     return replace(
@@ -170,5 +182,29 @@ def keep_slow_modes(model: LinearModel, limit: float) -> LinearModel:
         ),
         dampers=motions.T @ model.dampers @ motions,
         spin=spin,
+        tangent_loads=tangent_loads,
         seat_tilts=model.seat_tilts @ motions,
+        condensed_casing=CondensedCasing(
+            model.stiffness[:first] @ motions, model.dampers[:first] @ motions, motions[first:], rest
+        ),
     )
+
+
+def _slow_motions(model: LinearModel, limit: float) -> Array:
+    """Return the motions (c, k) of a casing below bodies that stand still: those that answer the flanks, then
+    modes up to a limit in Hz with these held.
+    """
+    first = casing_start(model)
+    stiffness, mass = model.stiffness[first:, first:], model.mass[first:, first:]
+    lengths = model.lengths[first:]
+    _, sizes, directions = np.linalg.svd(model.rows[:, first:] / lengths)
+    count = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+    flank_motions, unfelt = directions[:count] * lengths, directions[count:].T / lengths[:, None]
+    answers = np.linalg.solve(stiffness, flank_motions.T)
+    # Answers without mass have no motion of their own.
+    slow_parts = []
+    for basis, highest in ((answers, np.inf), (unfelt, limit)):
+        if basis.size:
+            frequencies, shapes = own_modes(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
+            slow_parts.append(basis @ shapes[:, frequencies <= highest])
+    return np.hstack(slow_parts)

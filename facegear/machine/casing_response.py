@@ -116,8 +116,9 @@ def sensor_table(machine: Machine, speeds: Sequence[float]) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row a speed, order and sensor: speed_rpm, order, frequency_hz, sensor, acceleration_m_per_s2; orders
-        that nothing excites are left out.
+        A row a speed, order and sensor: speed_rpm, order, frequency_hz, sensor, acceleration_m_per_s2, and
+        is_valid, whether the modes that were kept of the casing reach as far; orders that nothing excites are
+        left out.
 
     Raises
     ------
@@ -133,10 +134,12 @@ def sensor_table(machine: Machine, speeds: Sequence[float]) -> pd.DataFrame:
             if not any(part[order - 1].any() for part in excitations):
                 continue
             frequency = order * mesh_frequency(machine.layout, speed)
+            is_valid = frequency <= machine.casing.mounted.valid_up_to
             rows += [
-                (speed, order, frequency, name, value) for name, value in zip(names, of_sensors, strict=True)
+                (speed, order, frequency, name, value, is_valid)
+                for name, value in zip(names, of_sensors, strict=True)
             ]
-    columns = ("speed_rpm", "order", "frequency_hz", "sensor", "acceleration_m_per_s2")
+    columns = ("speed_rpm", "order", "frequency_hz", "sensor", "acceleration_m_per_s2", "is_valid")
     return pd.DataFrame(rows, columns=list(columns))
 
 

@@ -225,8 +225,10 @@ def mode_table(machine: Machine, modes: Modes) -> pd.DataFrame:
     Returns
     -------
     pd.DataFrame
-        A row a mode: order, frequency_hz, casing_energy_fraction, is_casing_mode.
+        A row a mode: order, frequency_hz, casing_energy_fraction, is_casing_mode, and is_valid, whether the
+        modes that were kept of the casing reach as far (`MountedCasing.valid_up_to`).
     """
+    assert machine.casing is not None
     fractions = casing_energy_fractions(machine.linear, modes)
     return pd.DataFrame(
         {
@@ -234,6 +236,7 @@ def mode_table(machine: Machine, modes: Modes) -> pd.DataFrame:
             "frequency_hz": modes.frequencies,
             "casing_energy_fraction": fractions,
             "is_casing_mode": fractions >= CASING_MODE,
+            "is_valid": modes.frequencies <= machine.casing.mounted.valid_up_to,
         }
     )
 

@@ -130,6 +130,12 @@ class DriveLine:
         """
         return 2 * len(self.tilting) + sum(len(chain) for chain in self.masses.values())
 
+    @property
+    def is_tilted_by_meshes(self) -> bool:
+        """Whether meshes tilt pinions on shafts or push them along their axes."""
+        seated = self.seats if self.layout.kind is not None else self.tilting
+        return bool(seated) and self.layout.meshes_tilt_pinions
+
     def tilts(self, pinion: int) -> Integers:
         """Return the coordinates tilt_x and tilt_y of a pinion that tilts.
 
@@ -252,7 +258,7 @@ class DriveLine:
         the moment of the flank's normal about the middle of the pinion's face for tilts.
         """
         rows, layout = np.pad(model.rows, ((0, 0), (0, self.size))), self.layout
-        if layout.kind is None:
+        if not layout.meshes_tilt_pinions:
             return rows
         for mesh, (pinion, gear) in enumerate(layout.meshes):
             if pinion in self.tilting:
@@ -353,7 +359,7 @@ class DriveLine:
             False where an axial force loads a pinion whose bearings couple axial and other motions, and
             with rolling bearings, and where meshes push pinions along their axes or tilt them.
         """
-        if self.rolling or (self.layout.kind is not None and self.seats):
+        if self.rolling or self.is_tilted_by_meshes:
             return False
         axial_coordinates = [self.motions(i)[2] for i, seat in self.seats.items() if seat.couples_axially]
         return not model.forces[axial_coordinates].any()

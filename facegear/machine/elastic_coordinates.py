@@ -5,12 +5,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.parts.reduced_body import ReducedBody
+from facegear.machine.layout import Layout
+from facegear.machine.mesh_frames import rim_forces
+from facegear.parts.reduced_body import ReducedBody, RimForces
 
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 """J, which turns the cosine and sine coordinates of a wave by a quarter of a period."""
 X, Y, Z, THETA, TILT_X, TILT_Y = range(6)
 """Rows of the hub's motions in `Coordinates.mass_hub`."""
+
+
+def gear_forces(layout: Layout, gear: int) -> RimForces:
+    """Return the unit forces of the flanks of a gear's meshes on its rim.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    gear : int
+        Number of the gear.
+
+    Returns
+    -------
+    RimForces
+        The same at every mesh of the gear, N for 1 N and rad.
+    """
+    middle = 0.0 if layout.kind is None else layout.kind.middle_turn
+    return rim_forces(layout.flank_frames[gear], layout.gears[gear].sign, middle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +54,10 @@ class Coordinates:
         Velocity terms on the hub's coordinates by theirs; those on theirs are the negative.
     rows : (2 meshes of the gear, k)
         Derivative of the deflections of its flanks, drive flanks first.
-    slopes : (2, meshes of the gear, k)
+    slopes : (2 or 4, meshes of the gear, k)
         Slopes of the rim below each mesh by the coordinates, as `LinearModel.slopes`.
     lengths : (k,)
-        Motion of the pitch point by a unit of each, m.
+        Motion of the pitch point by a unit of each, in the directions in which flanks press, m.
     """
 
     letters: tuple[str, ...]
@@ -52,7 +73,7 @@ class Coordinates:
     lengths: Array
 
 
-def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
+def coordinates(body: ReducedBody, sign: float, angles: Array, forces: RimForces) -> Coordinates:
     """Return the elastic coordinates of a gear with meshes at given angles, from its modes.
 
     Matrices of rotation are those for a speed of the body of 1 rad/s, in the frame that stands still in
@@ -66,8 +87,8 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         1 for the upper, -1 for the lower gear, dimensionless.
     angles : (n,) array
         Angles of the meshes, rad.
-    pressure_angle : float
-        Pressure angle, rad.
+    forces : RimForces
+        Unit forces of the flanks of a mesh on the gear's rim.
 
     Returns
     -------
@@ -81,7 +102,8 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
     shift = np.diag(body.order.astype(float)) + body.coriolis
     n = body.order[:, None].astype(float)
     slowed = body.stiffening - np.diag(body.order.astype(float) ** 2) - 2.0 * n * body.coriolis
-    axial, around = body.mesh[:, mode]
+    axial, around, radial = motions = body.mesh[:, mode]
+    lengths = np.hypot(np.hypot(axial, around), radial * forces.push_outwards)
     stiffness = (2.0 * np.pi * body.frequency[mode]) ** 2
     coriolis = 2.0 * pair * np.where(order[:, None] > 0, shift[np.ix_(mode, mode)], 0.0)
     coriolis += _order_zero(body, mode)
@@ -95,9 +117,9 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         circulatory=circulatory,
         centrifugal=is_same_part * slowed[np.ix_(mode, mode)],
         gyroscopic_hub=_hub_coriolis(body, mode, cosine, sign),
-        rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
-        slopes=rim_slopes(order, part, axial, body.slopes[mode], body.round[mode], angles),
-        lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
+        rows=flank_rows(order, part, motions, body.round[mode], forces, angles),
+        slopes=rim_slopes(order, part, motions, body.slopes[mode], body.round[mode], forces, angles),
+        lengths=np.maximum(lengths, 1e-9 * lengths.max(initial=1.0)),
     )
 
 
@@ -166,19 +188,11 @@ def _hub_coriolis(body: ReducedBody, mode: Integers, cosine: Mask, sign: float) 
 
 
 def flank_rows(
-    order: Integers,
-    part: Integers,
-    axial: Array,
-    around: Array,
-    turning: Array,
-    sign: float,
-    angles: Array,
-    pressure_angle: float,
+    order: Integers, part: Integers, motions: Array, turning: Array, forces: RimForces, angles: Array
 ) -> Array:
     """Return the derivatives of the deflections of the flanks, as `Coordinates.rows`.
 
-    The deflection d loses the motion of the pitch point along the force on the gear, -sin a axially and +-cos
-    a round it.
+    A deflection loses the motion of the pitch point along the force on the gear.
 
     Parameters
     ----------
@@ -186,35 +200,34 @@ def flank_rows(
         Number of waves round the gear of each coordinate, dimensionless.
     part : (k,) array of int
         0 for the cosine, 1 for the sine, dimensionless.
-    axial : (k,) array
-        Axial motion of the pitch point by a unit of each coordinate, m.
-    around : (k,) array
-        Its motion round the axis, m.
+    motions : (3, k) array
+        Motion of the pitch point along the axis, round it and along the radius by a unit of each coordinate,
+        m.
     turning : (k,) array
         1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
-    sign : float
-        1 for the upper, -1 for the lower gear, dimensionless.
+    forces : RimForces
+        Unit forces of the flanks of a mesh.
     angles : (n,) array
         Angles of the meshes, rad.
-    pressure_angle : float
-        Pressure angle, rad.
 
     Returns
     -------
     (2 n, k) array
         m for a unit of each coordinate, drive flanks first.
     """
-    phase = order * angles[:, None]
-    cos, sin = np.cos(phase), np.sin(phase)
-    along = around * np.where(part == 0, sin, -cos)
-    along = np.where((order == 0), around * turning, along)
-    up = lifts(order, part, axial, turning, angles)
-    separating_motion, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
-    return np.concatenate([separating_motion - tangential, separating_motion + tangential])
+    rows = []
+    for (axial, tangential, radial), turn in zip(forces.directions, forces.turns, strict=True):
+        at = angles + turn
+        phase = order * at[:, None]
+        along = motions[1] * np.where(part == 0, np.sin(phase), -np.cos(phase))
+        along = np.where(order == 0, motions[1] * turning, along)
+        up, out = (lifts(order, part, motion, turning, at) for motion in (motions[0], motions[2]))
+        rows.append(-(axial * up + tangential * along + radial * out))
+    return np.concatenate(rows)
 
 
 def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles: Array) -> Array:
-    """Return the axial motion of the rim at some angles for a unit of each coordinate.
+    """Return the axial or radial motion of the rim at some angles for a unit of each coordinate.
 
     Order n has axial * cos(n angle) or axial * sin(n angle); order 0 has `axial`, or 0 where it goes
     round the axis.
@@ -243,9 +256,16 @@ def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles:
 
 
 def rim_slopes(
-    order: Integers, part: Integers, axial: Array, radial: Array, turning: Array, angles: Array
+    order: Integers,
+    part: Integers,
+    motions: Array,
+    radial: Array,
+    turning: Array,
+    forces: RimForces,
+    angles: Array,
 ) -> Array:
-    """Return the slopes of the rim along the radius and round the axis by waves of heights and radial slopes.
+    """Return the slopes of the rim along the radius and round the axis below the middles of pinions' faces,
+    and where flanks push outwards its motions there along the axis and along the radius.
 
     Parameters
     ----------
@@ -253,20 +273,27 @@ def rim_slopes(
         Number of waves round the gear of each coordinate, dimensionless.
     part : (k,) array of int
         0 for the cosine, 1 for the sine, dimensionless.
-    axial : (k,) array
-        Amplitude of the height of each wave, m.
+    motions : (3, k) array
+        Motion of the pitch point along the axis, round it and along the radius by a unit of each coordinate,
+        m.
     radial : (k,) array
-        Amplitude of its slope along the radius, m/m.
+        Amplitude of the slope of the height along the radius, m/m.
     turning : (k,) array
         1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
+    forces : RimForces
+        Unit forces of the flanks of a mesh.
     angles : (n,) array
         Angles of the meshes, rad.
 
     Returns
     -------
-    (2, n, k) array
-        dW/dr in m/m and dW/dphi in m/rad for a unit of each coordinate.
+    (2 or 4, n, k) array
+        dW/dr in m/m, dW/dphi in m/rad, and the motions in m, for a unit of each coordinate.
     """
-    phase = order * angles[:, None]
-    around = order * axial * np.where(part == 0, -np.sin(phase), np.cos(phase))
-    return np.stack([lifts(order, part, radial, turning, angles), around])
+    at = angles + forces.middle
+    phase = order * at[:, None]
+    around = order * motions[0] * np.where(part == 0, -np.sin(phase), np.cos(phase))
+    slopes = [lifts(order, part, radial, turning, at), around]
+    if forces.push_outwards:
+        slopes += [lifts(order, part, motion, turning, at) for motion in (motions[0], motions[2])]
+    return np.stack(slopes)

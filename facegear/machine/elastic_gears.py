@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.machine.elastic_coordinates import TILT_X, TILT_Y, Coordinates, X, Y, coordinates
+from facegear.machine.elastic_coordinates import TILT_X, TILT_Y, Coordinates, X, Y, coordinates, gear_forces
 from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import LinearModel, Spin
 from facegear.parts.reduced_body import ReducedBody
@@ -58,12 +58,12 @@ class ElasticGears:
         Returns
         -------
         Array
-            Shape (meshes, 2, 2), m/N, as `residuals`. An attached coordinate takes the same part of each
-            entry, so that what remains is diagonal.
+            Shape (meshes, 2, 2), m/N, as `residuals`. An attached coordinate takes the same part of either
+            flank's own compliance, so that what remains is diagonal and not negative.
         """
         left_out = self.residuals()
         for mesh in self.attached:
-            left_out[mesh] = np.eye(2) * (left_out[mesh, 0, 0] - abs(left_out[mesh, 0, 1]))
+            left_out[mesh] = np.diag(np.diagonal(left_out[mesh]) - _attached_ways(left_out[mesh]) ** 2)
         return left_out
 
     def residuals(self) -> Array:
@@ -75,9 +75,10 @@ class ElasticGears:
             Shape (meshes, 2, 2), m/N. Entry [m, i, j] is the motion of flank i against its own force by a
             unit force on flank j; 0 is the drive flank, 1 the back flank.
         """
-        sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
-        directions = np.array([[-sine, cosine], [-sine, -cosine]])
-        of_gears = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
+        of_gears = {
+            gear: body.residual_of_flanks(gear_forces(self.layout, gear))
+            for gear, body in self.bodies.items()
+        }
         return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
@@ -91,22 +92,22 @@ class ElasticGears:
             model = self._with_gear(model, gear, body)
         residuals = self.residuals()
         for mesh in self.attached:
-            model = self._with_attached(model, mesh, float(residuals[mesh, 0, 1]))
+            model = self._with_attached(model, mesh, residuals[mesh])
         return model
 
-    def _with_attached(self, model: LinearModel, mesh: int, between: float) -> LinearModel:
+    def _with_attached(self, model: LinearModel, mesh: int, residual: Array) -> LinearModel:
         """Return the model with a coordinate that couples the two flanks of a mesh.
 
-        between: motion of either flank by a unit force on the other that the modes leave out, m/N. The
-        coordinate has unit mass and ATTACHED_FREQUENCY times the frequency of the gear's fastest mode;
-        its flank rows are scaled such that its compliance between the flanks is `between`.
+        residual (2, 2): motion of flanks by unit forces on them that the modes leave out, m/N. The
+        coordinate has unit mass and ATTACHED_FREQUENCY times the frequency of the gear's fastest mode; its
+        flank rows are scaled such that its compliance between the flanks is that of `residual`.
         """
         layout, gear = self.layout, self.layout.meshes[mesh][1]
-        modes = coordinates(self.bodies[gear], layout.gears[gear].sign, layout.angles, layout.pressure_angle)
-        omega = ATTACHED_FREQUENCY * float(np.sqrt(modes.stiffness.max()))
-        way = np.sqrt(abs(between)) * omega
+        fastest = 2.0 * np.pi * self.bodies[gear].frequency.max()
+        omega = ATTACHED_FREQUENCY * float(fastest)
+        ways = _attached_ways(residual) * omega
         column = np.zeros((len(model.rows), 1))
-        column[[mesh, mesh + len(layout.meshes)], 0] = way, np.copysign(way, between)
+        column[[mesh, mesh + len(layout.meshes)], 0] = ways[0], np.copysign(ways[1], residual[0, 1])
         damping_of_lumped_model = model.mass_damping + model.bearing_damping * omega**2
         spin = model.spin
         if spin is not None:
@@ -120,11 +121,11 @@ class ElasticGears:
             rows=np.hstack([model.rows, column]),
             torques=np.append(model.torques, 0.0),
             forces=np.append(model.forces, 0.0),
-            lengths=np.append(model.lengths, way),
+            lengths=np.append(model.lengths, ways.max()),
             dampers=append_block(
                 model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - damping_of_lumped_model]])
             ),
-            slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
+            slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool)),
             spin=spin,
         )
 
@@ -136,7 +137,7 @@ class ElasticGears:
         coordinates.
         """
         layout, face_gear = self.layout, self.layout.gears[gear]
-        elastic = coordinates(body, face_gear.sign, layout.angles, layout.pressure_angle)
+        elastic = coordinates(body, face_gear.sign, layout.angles, gear_forces(layout, gear))
         old, new = model.size, len(elastic.letters)
         speed = face_gear.sign * layout.pinion_teeth / layout.gear_teeth
         hub, mass_hub, gyroscopic_hub = _hub_terms(layout, gear, body, elastic)
@@ -171,6 +172,17 @@ class ElasticGears:
                 append_block(before.centrifugal, speed**2 * elastic.centrifugal),
             ),
         )
+
+
+def _attached_ways(residual: Array) -> Array:
+    """Return the motions (2,) of both flanks by an attached coordinate of unit stiffness, square root of m/N.
+
+    Their product is the compliance between the flanks in `residual` (2, 2), m/N, without its sign; their
+    squares are the same part of the flanks' own compliances.
+    """
+    first, second = np.diagonal(residual)
+    ratio = np.sqrt(np.sqrt(first / second)) if first > 0.0 < second else 1.0
+    return np.asarray(np.sqrt(abs(residual[0, 1])) * np.array([ratio, 1.0 / ratio]))
 
 
 def _hub_terms(

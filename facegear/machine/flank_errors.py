@@ -62,7 +62,7 @@ def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
     """Return `error_series` of a machine without constant errors; cached by the machine's identity."""
     mesh_series = machine.imperfections.series
     shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
-    return _flank_series(tuple(shapes), flank_lags(machine, machine.error_phases))
+    return _flank_series(tuple(shapes), tuple(shapes), flank_lags(machine, machine.error_phases))
 
 
 @lru_cache(maxsize=16)
@@ -203,13 +203,15 @@ def mirror_series(series: Harmonics) -> Harmonics:
 
 
 @kept_by_content(8)
-def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
+def _flank_series(
+    drive: tuple[Harmonics, ...], back: tuple[Harmonics, ...], phases: Array
+) -> tuple[Harmonics, ...]:
     """Return the series of all drive flanks, then of all back flanks, each shifted by its lag.
 
-    drive: series of each mesh without lag, of which back flanks have the mirror image f(-t); phases (2
+    drive, back: series of each mesh without lag, of which back flanks have the mirror image f(-t); phases (2
     meshes,): lags of the flanks, mesh periods.
     """
-    flanks = [*drive, *(mirror_series(series) for series in drive)]
+    flanks = [*drive, *(mirror_series(series) for series in back)]
     lags = [float(lag) for lag in np.round(phases, 12)]
     return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
 

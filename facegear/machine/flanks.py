@@ -156,7 +156,7 @@ def flank_law(machine: Machine) -> MeshLaw:
     """Return the force law of all drive flanks, then all back flanks, each with its own lag.
 
     `machine.law` wins where it is given; else the law is made from `machine.tables`; else it is linear
-    with `machine.mesh_stiffness`. A back flank has the mirrored series.
+    with `machine.stiffness_by_flank`. A back flank has the mirrored series.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def _flank_law(machine: Machine) -> MeshLaw:
         return machine.law
     phases = flank_lags(machine, machine.phases)
     if machine.tables is None:
-        return _linear_law(machine.mesh_stiffness, phases)
+        return _linear_law(*machine.stiffness_by_flank, phases)
     gears, factors = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
     return _law_of_tables(machine.tables, gears, factors, machine.own_softening, _lags(phases))
 
@@ -213,13 +213,13 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 
 
 @kept_by_content(4)
-def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
+def _linear_law(drive: tuple[Harmonics, ...], back: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
     """Return the linear law of all drive flanks, then all back flanks.
 
-    stiffness: series of each mesh over the reference's cycle, N/m; phases (2 meshes,): lags of the flanks,
-    mesh periods.
+    drive, back: series of each mesh over the reference's cycle, N/m, of back flanks before they are
+    mirrored; phases (2 meshes,): lags of the flanks, mesh periods.
     """
-    return linear_law(_flank_series(stiffness, phases))
+    return linear_law(_flank_series(drive, back, phases))
 
 
 @kept_by_content(4)
@@ -286,14 +286,14 @@ def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) 
     return load_dependent_law(shift_tables(drive, lags))
 
 
-def flank_places(phases: Array, cycles: Array) -> Array:
-    """Return the position of every flank in the reference's mesh cycle: cycles - phase, its negative for
-    a back flank, which goes through the reference's cycle the other way round.
+def flank_places(lags: Array, cycles: Array) -> Array:
+    """Return the position of every flank in the reference's mesh cycle: cycles - lag, its negative for a back
+    flank, which goes through the reference's cycle the other way round.
 
     Parameters
     ----------
-    phases : (meshes,) array
-        Lag of each mesh, mesh periods.
+    lags : (2 meshes,) array
+        Lag of each flank as `flank_lags` returns it, mesh periods, drive flanks first.
     cycles : (K,) array
         Mesh cycles from the start, periods.
 
@@ -302,5 +302,6 @@ def flank_places(phases: Array, cycles: Array) -> Array:
     (K, 2 meshes) array
         Mesh periods in [0, 1), drive flanks first.
     """
-    drive = cycles[:, None] - phases
-    return np.mod(np.concatenate([drive, -drive], axis=1), 1.0)
+    positions = cycles[:, None] - lags
+    positions[:, lags.size // 2 :] *= -1.0
+    return np.mod(positions, 1.0)

@@ -205,8 +205,8 @@ class Layout:
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
     `kinematics` says what `pinion_radius` and `gear_radius` are. `kind` describes teeth other than spur teeth
-    at right angles; `pressure_angle` is that of their drive flank in the normal section. Properties are
-    computed once; their arrays are shared and must not be changed.
+    at right angles; `pressure_angle` is that of their drive flank in the normal section. `middle` is that of
+    `pinion_middle` for spur teeth. Properties are computed once; their arrays must not be changed.
     """
 
     pinions: tuple[Pinion, ...]
@@ -218,6 +218,7 @@ class Layout:
     gear_radius: float
     kinematics: Kinematics
     kind: ToothKind | None = None
+    middle: float | None = None
 
     def __post_init__(self) -> None:
         if not self.pinions:
@@ -257,9 +258,7 @@ class Layout:
 
     @cached_property
     def pitch_slope(self) -> float:
-        """Way along the drive flank's normal by an arc on the pitch circles of pinion or gear: the cosine of
-        the pressure angle times that of the helix.
-        """
+        """Way along the drive flank's normal by an arc on the pitch circles: cosines of both angles."""
         return float(
             np.cos(self.pressure_angle) if self.kind is None else self.pinion_arm / self.pitch_radius
         )
@@ -269,7 +268,14 @@ class Layout:
         """Lines of contact of drive and back flank, by the number of the gear."""
         if self.kind is not None:
             return tuple(self.kind.frames(gear.sign) for gear in self.gears)
-        return tuple(spur_frames(gear.sign, self.pressure_angle, self.mesh_radius) for gear in self.gears)
+        distances = self.pitch_radius, self.mesh_radius, self.pinion_middle
+        return tuple(spur_frames(gear.sign, self.pressure_angle, *distances) for gear in self.gears)
+
+    @cached_property
+    def meshes_tilt_pinions(self) -> bool:
+        """Whether meshes tilt pinions or push them along their axes: all but spur teeth at their middles."""
+        elsewhere = self.kind is not None or self.pinion_middle != self.mesh_radius
+        return self.kinematics.flanks_apart and elsewhere
 
     @cached_property
     def back_arm(self) -> float:
@@ -295,8 +301,9 @@ class Layout:
 
     @cached_property
     def pinion_middle(self) -> float:
-        """Place of the middles of the pinions' faces along their axes, m; of spur teeth at the meshes."""
-        return self.mesh_radius if self.kind is None else self.kind.family.middle
+        """Place of the middles of the pinions' faces along their axes, m; at the meshes if not known."""
+        middle = self.middle if self.kind is None else self.kind.family.middle
+        return self.mesh_radius if middle is None else middle
 
     @cached_property
     def base_pitch(self) -> float:
@@ -312,9 +319,7 @@ class Layout:
 
     def tilt_distance(self, gear: int) -> float:
         """Return the distance along the gear's axis, towards the gear, from where the pinions' axes pass it
-        to the point about which the gear tilts.
-
-        It is the height of the pitch plane, the pinion's pitch radius at right angles, plus `Tilt.below`.
+        to the point about which the gear tilts: the height of the pitch plane plus `Tilt.below`.
 
         Parameters
         ----------
@@ -403,9 +408,8 @@ class Layout:
         return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
 
     def half_turned(self, gear: int) -> bool:
-        """Whether a gear meets a pinion half a turn of the pinion away from the reference mesh.
-
-        The reference is the first pinion's mesh with the upper gear, or with the only gear.
+        """Whether a gear meets a pinion half a turn of the pinion away from the reference mesh, the first
+        pinion's with the upper gear, or with the only gear.
 
         Parameters
         ----------

@@ -54,6 +54,28 @@ class Rings:
 
 
 @dataclass(frozen=True, eq=False)
+class CondensedCasing:
+    """A casing whose slow motions alone are coordinates, by the first k coordinates of a model.
+
+    Attributes
+    ----------
+    stiffness, dampers : (b, k) array
+        Loads on the bearings of the first b coordinates, those of bodies, by displacements and by velocities,
+        SI units. The model's own matrices hold what moves the casing with the bodies, too.
+    casing : (c, k) array
+        Motions of all seats, feet and modes of the casing, m and rad.
+    rest : (c,) array
+        The constant part of these motions that no coordinate has, m and rad: what constant loads on seats do,
+        which tangents of rolling bearings have.
+    """
+
+    stiffness: Array
+    dampers: Array
+    casing: Array
+    rest: Array
+
+
+@dataclass(frozen=True, eq=False)
 class LinearModel:
     """n coordinates; m flanks; SI units.
 
@@ -81,15 +103,19 @@ class LinearModel:
         Bearings with clearance.
     spin
         What turning bodies add, None for nothing.
-    slopes : (2, meshes, n)
+    slopes : (2 or 4, meshes, n)
         Slopes of the height W of the rim (positive towards the teeth) below each mesh, by all coordinates:
-        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
+        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; then of teeth that push outwards W itself and
+        the motion of the rim outwards, m for a metre; None for rigid gears.
     tangent_loads : (n,)
         The part of `forces` that tangents of rolling bearings add: tangent times motion less load, both at
         the mean load; None without rolling bearings.
     seat_tilts : (bodies, 2, k)
         Tilts about x and y of bodies that have no such coordinates, by the first k coordinates, rad: those
         with their seats on a casing; None without one.
+    condensed_casing : CondensedCasing
+        What a casing does that follows the bodies but for its slow motions; None where all of its motions are
+        coordinates, and without one.
     """
 
     labels: tuple[str, ...]
@@ -108,6 +134,7 @@ class LinearModel:
     slopes: Array | None = field(default=None)
     tangent_loads: Array | None = field(default=None)
     seat_tilts: Array | None = field(default=None)
+    condensed_casing: CondensedCasing | None = field(default=None)
 
     @property
     def size(self) -> int:
@@ -181,26 +208,47 @@ class LinearModel:
         added_count = self.size - rows.shape[-1]
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
 
-    def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
+    def with_slopes(self, meshes: Mask, added_slopes: Array | None = None) -> Array | None:
         """Return `slopes` with columns for k more coordinates behind the n present ones.
 
         Parameters
         ----------
         meshes : (meshes,) array of bool
             The meshes below which these coordinates move the rim; the others get zeros.
-        added_slopes : (2, meshes of a gear, k) array
-            Slopes by k more coordinates below these meshes, 1/m and m/m.
+        added_slopes : (2 or 4, meshes of a gear, k) array or None
+            Slopes by k more coordinates below these meshes, 1/m and m/m; None for one that moves no rim.
 
         Returns
         -------
-        (2, meshes, n + k) array
+        (2 or 4, meshes, n + k) array or None
             In the units of `slopes`, 1/m and m/m.
         """
-        slopes = np.zeros((2, meshes.size, self.size + added_slopes.shape[2]))
+        if added_slopes is None:
+            return None if self.slopes is None else np.pad(self.slopes, ((0, 0), (0, 0), (0, 1)))
+        slopes = np.zeros((len(added_slopes), meshes.size, self.size + added_slopes.shape[2]))
         if self.slopes is not None:
             slopes[:, :, : self.size] = self.slopes
         slopes[:, meshes, self.size :] = added_slopes
         return slopes
+
+    def bearing_rows(self, coordinates: Integers) -> tuple[Array, Array]:
+        """Return the derivatives of the loads of bodies on their bearings.
+
+        Parameters
+        ----------
+        coordinates : (r,) array of int
+            Indices of coordinates of bodies along which the loads act.
+
+        Returns
+        -------
+        tuple of two (r, n) arrays
+            By displacements, N/m, and of dampers by velocities, N s/m; the share of `bearing_damping` is left
+            out.
+        """
+        if self.condensed_casing is None:
+            return self.stiffness[coordinates], self.dampers[coordinates]
+        stiffness, dampers = self.condensed_casing.stiffness, self.condensed_casing.dampers
+        return self.over_all(stiffness[coordinates]), self.over_all(dampers[coordinates])
 
     def of_body(self, name: str) -> Integers:
         """Return the indices of the coordinates that belong to a body, those of tilts and elastic waves

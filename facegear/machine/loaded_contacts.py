@@ -138,7 +138,7 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     pinions, static_machine = len(machine.layout.pinions), at_rest(machine)
     rings, positions = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
     forces = forces_by_active_sets(static_machine)
-    constant = np.tile(machine.mean_stiffness, 2)
+    constant = machine.mean_flank_stiffness
     if forces is not None:
         past_law = np.zeros(constant.size, bool)
         return LoadedContacts(forces, constant, forces / constant, past_law, rings, positions)
@@ -181,7 +181,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     jacobian = linear.rows * scale
     bearing = linear.stiffness * np.outer(scale, scale)
     loads = linear.loads * scale
-    stiffness = np.tile(machine.mean_stiffness, 2)
+    stiffness = machine.mean_flank_stiffness
     gaps = flank_edges(machine)
     contact_mask = np.arange(gaps.size) < len(machine.layout.meshes)
     for _ in range(MAX_SETS):

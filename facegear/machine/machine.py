@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from facegear.by_content import kept_by_content
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
 from facegear.machine.casing import Casing
+from facegear.machine.casing_coordinates import keep_slow_motions
 from facegear.machine.disturbances import (
     Excitation,
     MeshFriction,
@@ -21,7 +23,7 @@ from facegear.machine.disturbances import (
 )
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.imperfections import Imperfections, perfect
-from facegear.machine.layout import Layout
+from facegear.machine.layout import DOF_PER_BODY, Layout
 from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
 from facegear.machine.mesh_phases import PhaseConvention, mesh_phases
 from facegear.machine.supports import add_tangents
@@ -124,6 +126,11 @@ class Machine:
         default.
     excitations
         Periodic torques beside the mean torques; without effect at rest.
+    flank_stiffness
+        Stiffness over a mesh cycle of the drive and the back flank at each gear, N/m, where flanks differ;
+        None: `stiffness` for all. That of a back flank is of the mirrored pair, in which it drives.
+    has_phase_shifts
+        Whether the place of a mesh in its cycle moves in motion as its pinion turns and floats.
     """
 
     layout: Layout
@@ -145,6 +152,8 @@ class Machine:
     casing: Casing | None = None
     directions: Bodies | None = None
     excitations: tuple[Excitation, ...] = ()
+    flank_stiffness: tuple[tuple[Harmonics, Harmonics], ...] | None = None
+    has_phase_shifts: bool = False
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -165,26 +174,40 @@ class Machine:
                 raise InvalidInput(
                     quantity, count_noun(len(values), "mesh", "meshes"), f"one for each of {meshes}"
                 )
-        minimum = self.stiffness.minimum
-        if minimum <= 0.0:
-            raise InvalidInput(
-                "mesh stiffness", f"{minimum:.3g} N/m", "positive everywhere in the mesh cycle"
-            )
+        for series in (self.stiffness, *chain.from_iterable(self.flank_stiffness or ())):
+            minimum = series.minimum
+            if minimum <= 0.0:
+                raise InvalidInput(
+                    "mesh stiffness", f"{minimum:.3g} N/m", "positive everywhere in the mesh cycle"
+                )
 
     @cached_property
     def linear(self) -> LinearModel:
-        """Linear model of the whole machine, the tangents of its rolling bearings included."""
-        return add_tangents(self.linear_without_rolling, self.drive_line, self.casing)
+        """Linear model of the whole machine, the tangents of its rolling bearings included; of a casing with
+        a frequency limit the slow motions alone are coordinates.
+        """
+        casing, line = self.casing, self.drive_line
+        if casing is None or casing.frequency_limit is None:
+            return add_tangents(self.linear_without_rolling, line, casing)
+        seated = add_tangents(self._seated_model, line, casing)
+        return self._with_bodies(keep_slow_motions(seated, casing.frequency_limit))
 
     @cached_property
     def linear_without_rolling(self) -> LinearModel:
         """Linear model without rolling bearings: `lumped_model`, extended by the drive line, then by the
-        casing, then by `bodies` (gears that bend), then by `directions`, each if given. Its first coordinates
-        are the layout's.
+        casing with all of its coordinates, then by `bodies` (gears that bend), then by `directions`, each if
+        given. Its first coordinates are the layout's.
         """
+        return self._with_bodies(self._seated_model)
+
+    @cached_property
+    def _seated_model(self) -> LinearModel:
+        """Linear model of the layout with drive line and casing."""
         model = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
-        if self.casing is not None:
-            model = self.casing(model, self.drive_line)
+        return model if self.casing is None else self.casing(model, self.drive_line)
+
+    def _with_bodies(self, model: LinearModel) -> LinearModel:
+        """Return a model extended by `bodies` and `directions`."""
         for add_part in (self.bodies, self.directions):
             model = model if add_part is None else add_part(model)
         return model
@@ -239,12 +262,28 @@ class Machine:
         return np.arange(self.lumped_model.size)[self.layout.spins]
 
     @cached_property
-    def mesh_stiffness(self) -> tuple[Harmonics, ...]:
-        """Linear stiffness series (N/m) of each mesh over the reference's mesh cycle, not shifted by its
-        phase: the common series times the mesh's stiffness factor, in series with `own_softening` where
-        there is one.
+    def stiffness_by_flank(self) -> tuple[tuple[Harmonics, ...], tuple[Harmonics, ...]]:
+        """Linear stiffness series (N/m) of the drive and of the back flank of each mesh over the reference's
+        mesh cycle, not shifted by its phase and of a back flank as in `flank_stiffness`: the common series
+        times the mesh's stiffness factor, in series with `own_softening` where there is one.
         """
-        series_of_teeth = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
+        drive = self._meshes([self.stiffness] * len(self.layout.gears))
+        if self.flank_stiffness is None:
+            return drive, drive
+        drive, back = (self._meshes(list(series)) for series in zip(*self.flank_stiffness, strict=True))
+        return drive, back
+
+    @property
+    def mesh_stiffness(self) -> tuple[Harmonics, ...]:
+        """Series of the drive flanks in `stiffness_by_flank`, N/m."""
+        return self.stiffness_by_flank[0]
+
+    def _meshes(self, series_of_gears: list[Harmonics]) -> tuple[Harmonics, ...]:
+        """Return the stiffness series of each mesh, N/m, from that of one flank at each gear."""
+        series_of_teeth = [
+            series_of_gears[g].scale(float(factor))
+            for (_, g), factor in zip(self.layout.meshes, self.imperfections.stiffness, strict=True)
+        ]
         if self.own_softening is None:
             return tuple(series_of_teeth)
         return tuple(
@@ -263,8 +302,14 @@ class Machine:
 
     @property
     def mean_stiffness(self) -> Array:
-        """Mean stiffness of each mesh, (meshes,), N/m."""
+        """Mean stiffness of the drive flank of each mesh, (meshes,), N/m."""
         return np.array([series.mean for series in self.mesh_stiffness])
+
+    @property
+    def mean_flank_stiffness(self) -> Array:
+        """Mean stiffness of each flank, (2 meshes,), N/m, drive flanks first."""
+        drive, back = self.stiffness_by_flank
+        return np.array([series.mean for series in (*drive, *back)])
 
     @property
     def constant_stiffness(self) -> bool:
@@ -278,8 +323,9 @@ class Machine:
         """Directions (rows, n) of all forces that excite motion beside those of the flanks.
 
         First the external forces, normalised; then one row for each mesh and each part of friction
-        (`disturbances.parts_of`), where there is friction; then one normalised row for each periodic torque,
-        without its rigid rotation. Rows that are zero are left out, except those of friction.
+        (`disturbances.parts_of`), where there is friction; then the normalised `phase_rows`, where phases
+        shift; then one normalised row for each periodic torque, without its rigid rotation. Rows that are
+        zero are left out, except those of friction.
         """
         linear = self.linear
         pushes = [np.zeros((0, linear.size))]
@@ -288,11 +334,29 @@ class Machine:
         if self.friction is not None:
             rows = friction_rows(self.layout, linear, self.drive_line)
             pushes.append(rows.reshape(-1, linear.size))
+        if self.has_phase_shifts:
+            pushes.append(self.phase_rows / np.linalg.norm(self.phase_rows))
         for excitation in self.excitations:
             force = self.straining_torque(excitation.body)
             if (size := float(np.linalg.norm(force))) > 0.0:
                 pushes.append(force[None] / size)
         return np.concatenate(pushes)
+
+    @property
+    def phase_rows(self) -> Array:
+        """Derivatives (flanks, n) of the places of the flanks in the mesh cycle by the coordinates, rad for
+        a unit: the turn and the float of the pinion, as lengths along the drive flank's line of action over
+        the base pitch. The common rotation of all bodies, which is even, moves no place.
+        """
+        layout, linear = self.layout, self.linear
+        rows = np.zeros((2, len(layout.meshes), linear.size))
+        for mesh, (i, g) in enumerate(layout.meshes):
+            for row, frame in zip(rows[:, mesh], layout.flank_frames[g], strict=True):
+                row[DOF_PER_BODY * i + 2] = frame.turn_by_place
+                row[DOF_PER_BODY * i + 3] = layout.pinion_arm
+        rotation = rigid_rotation(layout, linear, self.drive_line)
+        flanks = rows.reshape(-1, linear.size) * (2.0 * np.pi / layout.base_pitch)
+        return np.array([without_rigid_rotation(row, linear, rotation) for row in flanks])
 
     def straining_torque(self, body: int) -> Array:
         """Return the generalised force of a unit torque on a body, less the inertia force of the common

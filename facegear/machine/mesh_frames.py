@@ -12,11 +12,12 @@ At a mesh a gear has the tangent, its axis from the lower to the upper gear, and
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, pi
+from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.parts.reduced_body import RimForces
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.tooth_family import SIDES, Rack, RelativeMotion, ToothFamily
 
@@ -75,6 +76,41 @@ class FlankFrame:
             outwards * n_across - across * n_outwards,
             across * n_height - height * n_across,
         )
+
+
+def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float, middle: float = 0.0) -> RimForces:
+    """Return unit forces of the flanks of a mesh on the rim of the gear, where their lines of contact cross
+    the pitch plane.
+
+    A force has the same moments from every point of its line.
+
+    Parameters
+    ----------
+    frames : pair of FlankFrame
+        Lines of contact of drive and back flank.
+    sign : float
+        1 for the upper, -1 for the lower gear, dimensionless.
+    middle : float
+        Angle past that of the pinion at which the middle of its face stands, rad.
+
+    Returns
+    -------
+    RimForces
+        Heights count towards the teeth, against the axis of the upper gear.
+    """
+    directions, (turns, radii) = np.zeros((len(frames), 3)), np.zeros((2, len(frames)))
+    for flank, frame in enumerate(frames):
+        (n_across, n_height, n_outwards), (across, height, outwards) = frame.gear_normal, frame.gear_point
+        way = -height / n_height
+        place = across + way * n_across, outwards + way * n_outwards
+        turn = atan2(*place)
+        directions[flank] = (
+            -sign * n_height,
+            cos(turn) * n_across - sin(turn) * n_outwards,
+            sin(turn) * n_across + cos(turn) * n_outwards,
+        )
+        turns[flank], radii[flank] = turn, hypot(*place)
+    return RimForces(directions, turns, radii, middle)
 
 
 @dataclass(frozen=True)
@@ -146,6 +182,26 @@ class ToothKind:
     def _motion(self) -> RelativeMotion:
         """Motion of the pinion against the upper gear."""
         return RelativeMotion(self.pinion_teeth / self.gear_teeth, self.shaft_angle, self.offset)
+
+    def motion(self, sign: float) -> RelativeMotion:
+        """Return the motion of the pinion against a gear, in the mesh frame of that gear.
+
+        Parameters
+        ----------
+        sign : float
+            1 for the upper, -1 for the lower gear.
+
+        Returns
+        -------
+        RelativeMotion
+            Ratio, shaft angle and offset.
+        """
+        return self._motion if sign > 0.0 else self.family.below.motion
+
+    @property
+    def middle_turn(self) -> float:
+        """Angle round the gears' axis by which the offset moves the middle of the pinion's face, rad."""
+        return atan2(self.offset, self.family.middle * sin(self.shaft_angle))
 
     @property
     def lean(self) -> Array:
@@ -231,9 +287,11 @@ class ToothKind:
         )
 
 
-def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple[FlankFrame, FlankFrame]:
+def spur_frames(
+    sign: float, pressure_angle: float, pitch_radius: float, mesh_radius: float, middle: float
+) -> tuple[FlankFrame, FlankFrame]:
     """Return the lines of contact of spur teeth at right angles: both flanks in the section of the pitch
-    point, in which the middle of the pinion's face is taken to stand, so that no mesh tilts a pinion.
+    point, which tilt a pinion unless the middle of its face stands there.
 
     Parameters
     ----------
@@ -241,8 +299,12 @@ def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple
         1 for the upper, -1 for the lower gear.
     pressure_angle : float
         Pressure angle, rad.
+    pitch_radius : float
+        Pitch radius of the pinion, m.
     mesh_radius : float
         Distance of the meshes from the gear's axis, m.
+    middle : float
+        Place of the middle of the pinion's face along its axis, from the gear's axis, m.
 
     Returns
     -------
@@ -250,10 +312,11 @@ def spur_frames(sign: float, pressure_angle: float, mesh_radius: float) -> tuple
         Drive and back flank.
     """
     cosine, sine = float(np.cos(pressure_angle)), float(np.sin(pressure_angle))
+    outwards = mesh_radius - middle
     drive, back = (
         FlankFrame(
             normal=(side * sign * cosine, sign * sine, 0.0),
-            moment=(0.0, 0.0, 0.0),
+            moment=(-outwards * sign * sine, outwards * side * sign * cosine, -side * cosine * pitch_radius),
             gear_normal=(side * sign * cosine, sign * sine, 0.0),
             gear_point=(0.0, 0.0, mesh_radius),
             arm=float(side),

@@ -1,6 +1,6 @@
 """Rolling bearings where they stand in a machine, with the numbers of their catalogue."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from string import ascii_uppercase
 
 import numpy as np
@@ -50,7 +50,8 @@ class PlacedBearing:
         """Return the state of the bearing at an equilibrium of the machine.
 
         A bearing that carries nothing may stand anywhere in its clearance, also where it just touches: it is
-        taken where it was assembled, if it carries nothing there.
+        taken where it was assembled, if it carries nothing there. Forces below NO_LOAD of the largest on a
+        flank are rounding and count as none, also where elements are pressed in and balance each other.
 
         Parameters
         ----------
@@ -64,9 +65,11 @@ class PlacedBearing:
         BearingState
             The state.
         """
-        loads, largest = at_rest.shafts[self.pinion], float(at_rest.flank_forces[position].max())
-        if float(np.abs(loads.forces[position, self.number]).max()) <= NO_LOAD * largest:
+        loads = at_rest.shafts[self.pinion]
+        least = NO_LOAD * float(at_rest.flank_forces[position].max())
+        state = state_at(self.bearing, loads.rings[position, self.number])
+        if float(np.abs(loads.forces[position, self.number]).max()) <= least:
             assembled_state = state_at(self.bearing, np.zeros(MOTIONS))
-            if not assembled_state.force.any():
-                return assembled_state
-        return state_at(self.bearing, loads.rings[position, self.number])
+            if float(np.abs(assembled_state.force).max()) <= least:
+                state = assembled_state
+        return replace(state, force=np.where(np.abs(state.force) > least, state.force, 0.0))

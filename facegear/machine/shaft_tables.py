@@ -111,11 +111,11 @@ def tilting_moments(machine: Machine, at_rest: Equilibria) -> dict[int, Array]:
     Returns
     -------
     dict of int to (K, 2) array
-        Moments about x and y by the numbers of the pinions that tilt, N m; empty for spur teeth at right
-        angles, which tilt no pinion.
+        Moments about x and y by the numbers of the pinions that tilt, N m; empty where meshes tilt no
+        pinion.
     """
     line = machine.drive_line
-    if line is None or machine.layout.kind is None:
+    if line is None or not line.is_tilted_by_meshes:
         return {}
     loads = bearing_loads(machine.linear_without_rolling, at_rest.displacements, at_rest.on_shafts)
     return {pinion: loads[:, line.tilts(pinion)] for pinion in line.tilting}

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.machine.elastic_coordinates import flank_rows, rim_slopes
+from facegear.machine.elastic_coordinates import flank_rows, gear_forces, rim_slopes
 from facegear.machine.elastic_gears import ElasticGears, append_block
 from facegear.machine.layout import Layout
 from facegear.machine.linear_model import LinearModel
@@ -20,7 +20,7 @@ from facegear.machine.machine import Machine
 from facegear.parts.reduced_body import ReducedBody
 
 RANK_TOLERANCE = 1e-10
-"""Part of the largest singular value below which a direction of the flanks is that of others."""
+"""Part of the largest singular value below which a direction of the flanks is that of not_round."""
 
 
 def at_rest(machine: Machine) -> Machine:
@@ -72,9 +72,8 @@ class StaticGears:
             meshes = np.array([g == gear for _, g in layout.meshes])
             if self.with_slopes:
                 gear_rows, slopes = posed_rows(body, layout, gear)
-                lengths = np.abs(np.concatenate([gear_rows, layout.gear_radius * slopes[0], slopes[1]])).max(
-                    axis=0
-                )
+                motions = [gear_rows, layout.gear_radius * slopes[0], *slopes[1:]]
+                lengths = np.abs(np.concatenate(motions)).max(axis=0)
             else:
                 gear_rows, slopes = static_rows(body, layout, gear), None
                 lengths = np.abs(gear_rows).max(axis=0)
@@ -103,7 +102,7 @@ class StaticGears:
 def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
     """Return R of A = R R^T, the static compliance between the flanks of a gear.
 
-    Every order counts as two modes with unit stiffness that have its compliance.
+    Every order counts as three modes with unit stiffness that have its compliance.
 
     Parameters
     ----------
@@ -119,10 +118,7 @@ def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
     (2 meshes of the gear, p) array
         Drive flanks first; A is in m/N.
     """
-    sizes, vectors = np.linalg.eigh(body.static)
-    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
-    shapes[0] = np.diag(np.sqrt(np.diagonal(body.static[0])))  # along the axis or round it, never both
-    return _condense_columns(_waves(shapes, np.array([0.0, 1.0]), layout, gear)[0])
+    return _condense_columns(_waves(_shapes(body.static), layout, gear)[0])
 
 
 def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Array]:
@@ -143,39 +139,56 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
     Returns
     -------
     pair of arrays
-        R of the flanks (2 meshes of the gear, p), drive flanks first, and of the slopes (2, meshes, p):
-        dW/dr and dW/dphi for a unit of each of p coordinates with unit stiffness. R R^T of the flanks is
-        in m/N.
+        R of the flanks (2 meshes of the gear, p), drive flanks first, and of the slopes (2 or 4, meshes, p):
+        those of `rim_slopes` for a unit of each of p coordinates with unit stiffness. R R^T of the flanks
+        is in m/N.
     """
-    whole = body.compliance_with_slope(layout.gear_radius)
-    whole[0, 1, [0, 2]] = whole[0, [0, 2], 1] = 0.0  # along the axis or round it, never both
-    sizes, vectors = np.linalg.eigh(whole)
-    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
-    flanks, slopes = _waves(shapes, np.abs(vectors[0, 1]).round(), layout, gear)
+    shapes = _shapes(body.compliance_with_slope(layout.gear_radius))
+    flanks, slopes = _waves(shapes, layout, gear)
     columns = _condense_columns(np.concatenate([flanks, *slopes]))
-    radial, around = np.split(columns[len(flanks) :], 2)
-    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, around])
+    radial, *remaining = np.split(columns[len(flanks) :], len(slopes))
+    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, *remaining])
 
 
-def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
-    """Return motions of the flanks (2 meshes, c), and slopes (2, meshes, c), by waves of all orders.
+ROUND = 1
+"""Place of the motion round the axis among W_p, V_p, U_p and the slope, and of its wave in order 0."""
+
+
+def _shapes(compliances: Array) -> Array:
+    """Return W_p, V_p, U_p and any slope by waves of unit stiffness that have the compliances (orders, i, i).
+
+    The shapes are (orders, i, i), the wave last. In order 0 wave ROUND alone goes round the axis.
+    """
+    sizes, vectors = np.linalg.eigh(compliances)
+    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
+    not_round = np.delete(np.arange(compliances.shape[1]), ROUND)
+    at = np.ix_([0], not_round, not_round)
+    sizes, vectors = np.linalg.eigh(compliances[at])
+    shapes[0] = 0.0
+    shapes[at] = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
+    shapes[0, ROUND, ROUND] = np.sqrt(compliances[0, ROUND, ROUND])
+    return shapes
+
+
+def _waves(shapes: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
+    """Return motions of the flanks (2 meshes, c), and slopes (2 or 4, meshes, c), by waves of all orders.
 
     A wave is a coordinate with unit stiffness; order 0 has k of them, every other order k cosines and k
-    sines. shapes (orders, i, k): W_p, V_p and the slopes, each by k waves of every order; turning (k,):
-    which waves of order 0 go round the axis. The slopes are empty where `shapes` has none.
+    sines. shapes (orders, i, k): `_shapes`. The slopes are empty where `shapes` has none.
     """
     count = shapes.shape[2]
     orders = np.repeat(np.arange(len(shapes)), count)
-    axial, around, *slope = shapes.transpose(1, 0, 2).reshape(-1, orders.size)
-    round_axis = np.where(orders == 0, np.tile(turning, len(shapes)), 0.0)
+    motions, slope = np.split(shapes.transpose(1, 0, 2).reshape(-1, orders.size), [3])
+    round_axis = np.where(orders == 0, np.tile(np.arange(count) == ROUND, len(shapes)), 0.0)
+    forces = gear_forces(layout, gear)
     flanks, slopes = [], []
     for part in (0, 1):
         has_wave, parts = orders >= part, np.full(orders.size, part)  # order 0 has no sine
-        sign, angles = layout.gears[gear].sign, layout.angles
-        rows = flank_rows(orders, parts, axial, around, round_axis, sign, angles, layout.pressure_angle)
+        rows = flank_rows(orders, parts, motions, round_axis, forces, layout.angles)
         flanks.append(rows[:, has_wave])
         slopes += [
-            rim_slopes(orders, parts, axial, radial, round_axis, angles)[..., has_wave] for radial in slope
+            rim_slopes(orders, parts, motions, radial, round_axis, forces, layout.angles)[..., has_wave]
+            for radial in slope
         ]
     return np.concatenate(flanks, axis=1), np.concatenate(slopes, axis=2) if slopes else np.zeros((0, 0, 0))
 

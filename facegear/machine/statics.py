@@ -335,7 +335,8 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         If forces and moments stay out of balance at a position.
     """
     law_at_positions, gaps = law.statics_law(cycles), errors + np.tile(machine.half_backlash, 2)
-    if has_rolling_bearings(machine.drive_line):
+    in_motion = machine.casing is not None and machine.casing.frequency_limit is not None
+    if has_rolling_bearings(machine.drive_line) and not in_motion:
         return _settle_shafts(machine, law, cycles, gaps, law_at_positions.stiffness, names)
     blocks = static_blocks(machine.static_machine)
     if blocks is not None and has_kernel(law_at_positions):
@@ -343,7 +344,9 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
         if machine.drive_line is not None and machine.static_machine is not machine:
             displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
     else:
-        solve = solve_together if machine.layout.kind is not None else solve_one_by_one
+        line = machine.drive_line
+        is_coupled = machine.layout.kind is not None or (line is not None and line.is_tilted_by_meshes)
+        solve = solve_together if is_coupled else solve_one_by_one
         displacements, forces = solve(machine.linear, law, cycles, gaps)
     force_balance = balance(machine.linear, displacements, forces, law_at_positions.stiffness, gaps)
     force_balance.require(RESIDUAL_LIMIT, names)

@@ -28,6 +28,8 @@ class StiffnessRequest:
         Factor on k(t) about its mean.
     given_series : Harmonics
         Series of the config, N/m; zero for the other sources.
+    coast_series : Harmonics or None
+        Series of the coast flanks in the config, N/m; None where they are as the drive flanks.
     """
 
     source: Literal["fem", "fem_scaled", "harmonics"]
@@ -37,3 +39,4 @@ class StiffnessRequest:
     order: int
     variation: float
     given_series: Harmonics
+    coast_series: Harmonics | None = None

@@ -1,5 +1,6 @@
 """Mesh stiffness k(t) from the contact analysis or from given harmonics, with its tables."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ from facegear.meshing.stiffness_curve import LoadTable, load_table, peak_to_peak
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.number_format import format_number
 
+FlankSeries = tuple[tuple[Harmonics, Harmonics], ...]
+"""Stiffness series of drive and back flank at each gear of a machine, N/m."""
 HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
 """First columns of harmonics_table()."""
 
@@ -270,25 +273,100 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
     if request.source == "fem_scaled":
         assert request.mean is not None
         scale = request.mean / fit.series.mean
+    whole, series = _vary_fit(fit, scale, request)
+    error, cut = unloaded_series(ltca, series.order)
+    return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
+
+
+def _vary_fit(fit: Fit, scale: float, request: StiffnessRequest) -> tuple[Harmonics, Harmonics]:
+    """Return a fit's series times a factor and with the request's variation, whole and cut, N/m."""
     whole = fit.series.scale(scale).scale_variation(request.variation)
     series = whole.truncate(request.order)
     if series.minimum <= 0.0:
         largest = _largest_variation(fit.series.truncate(request.order))
         requirement = f"at most {largest:.4g}, so that k(t) stays positive"
         raise InvalidInput("variation of the mesh stiffness", request.variation, requirement)
-    error, cut = unloaded_series(ltca, series.order)
-    return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
+    return whole, series
 
 
-def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
+def _series_of_flank(rows: pd.DataFrame, scale: float, request: StiffnessRequest) -> Harmonics:
+    """Return the cut stiffness series of a flank from its rows of the contact table, times a factor, N/m."""
+    assert request.torque is not None
+    samples = load_table(rows).at(request.torque, request.definition)
+    return _vary_fit(fit_harmonics(samples), scale, request)[1]
+
+
+def with_flanks(table: pd.DataFrame, series_by_flank: Mapping[tuple[str, str], Harmonics]) -> pd.DataFrame:
+    """Add the series of single flanks to a harmonics table, order by order.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of harmonics_table().
+    series_by_flank : Mapping
+        Stiffness by gear and flank, N/m; of a back flank over the cycle of the mirrored pair.
+
+    Returns
+    -------
+    pd.DataFrame
+        The table with columns `<gear>_<flank>_sin_n_per_m` and `<gear>_<flank>_cos_n_per_m` for each.
+    """
+    last = max([int(table["order"].max()), *(series.order for series in series_by_flank.values())])
+    if last > table["order"].max():
+        further_rows = pd.DataFrame({"order": np.arange(int(table["order"].max()) + 1, last + 1)})
+        table = pd.concat([table, further_rows], ignore_index=True).fillna(0.0)
+    columns = {}
+    for (gear, flank), series in series_by_flank.items():
+        parts = np.zeros((2, last + 1))
+        parts[:, : series.order + 1] = series.sine, series.cosine
+        for part, values in zip(("sin", "cos"), parts, strict=True):
+            columns[f"{gear}_{flank}_{part}_n_per_m"] = values[table["order"].to_numpy(int)]
+    return table.assign(**columns)
+
+
+def flank_series(table: pd.DataFrame, gears: Sequence[str]) -> FlankSeries | None:
+    """Return the stiffness series of the flanks at each gear from a harmonics table.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table with columns of with_flanks(), if any.
+    gears : Sequence of str
+        `lower` and `upper`; a gear alone has the flanks of the upper one.
+
+    Returns
+    -------
+    tuple of pairs of Harmonics, or None
+        Drive and back flank of each gear, N/m; None where all flanks are alike.
+    """
+    flank_columns = [column for column in table if column.endswith("_cos_n_per_m")]
+    if not flank_columns:
+        return None
+
+    def series(gear: str, flank: str) -> Harmonics:
+        names = [f"{gear}_{flank}_{part}_n_per_m" for part in ("sin", "cos")]
+        if names[1] not in flank_columns:
+            return series_of(table)
+        return series_of(table[["order", *names]].set_axis(["order", *HARMONICS_COLUMNS[1:3]], axis=1))
+
+    names = [gear if len(gears) > 1 else "upper" for gear in gears]
+    return tuple((series(gear, "drive"), series(gear, "back")) for gear in names)
+
+
+def stiffness_from_contact(
+    ltca: pd.DataFrame, request: StiffnessRequest, flanks: pd.DataFrame | None = None
+) -> Stiffness:
     """Return `curve_from_contact` as tables.
 
-    The table of harmonics also has the means of both definitions at that load, times the same scale.
+    The table of harmonics also has the means of both definitions at that load, times the same scale, and the
+    series of all flanks that differ.
 
     Parameters
     ----------
     ltca : pd.DataFrame
         Table of the contact analysis.
+    flanks : pd.DataFrame or None
+        The same columns of the other flanks that differ, with columns gear and flank; None without any.
     request : StiffnessRequest
         Source, load and orders.
 
@@ -316,6 +394,12 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         mean_average_n_per_m=scale * table.at(torque, "average").mean(),
         mean_local_n_per_m=scale * table.at(torque, "local").mean(),
     )
+    if flanks is not None and len(flanks):
+        by_flank = {
+            (str(gear), str(flank)): _series_of_flank(rows, scale, request)
+            for (gear, flank), rows in flanks.groupby(["gear", "flank"])
+        }
+        harmonics = with_flanks(harmonics, by_flank)
     return Stiffness(
         curve_table(table.positions, _vary_samples(scale * curve.samples, request.variation), curve.series),
         harmonics,
@@ -342,9 +426,13 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     whole = request.given_series.scale_variation(request.variation)
     series = whole.truncate(request.order)
     positions = np.arange(CURVE_POINTS) / CURVE_POINTS
+    harmonics = harmonics_table(series, None)
+    if request.coast_series is not None:
+        coast = request.coast_series.scale_variation(request.variation).truncate(request.order)
+        harmonics = with_flanks(harmonics, dict.fromkeys([("lower", "back"), ("upper", "back")], coast))
     return Stiffness(
         curve_table(positions, whole(positions), series),
-        harmonics_table(series, None),
+        harmonics,
         harmonics_table(whole, None),
         f"given harmonics, {series.order} kept, mean {format_number(1e-6 * series.mean)} N/um",
     )

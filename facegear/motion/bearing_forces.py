@@ -131,9 +131,9 @@ def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Inte
     Displacement @ first + velocity @ second gives the force (N) or moment (N m) along each of the given
     coordinates of the linear model.
     """
-    basis = reduction.basis
-    springs = basis.T @ linear.stiffness[:, coordinates]
-    return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
+    stiffness, dampers = linear.bearing_rows(coordinates)
+    springs = reduction.basis.T @ stiffness.T
+    return springs, linear.bearing_damping * springs + reduction.basis.T @ dampers.T
 
 
 def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
@@ -215,7 +215,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
         history = np.concatenate([history, shaft_forces], axis=1)
         strains, about = None, None
-        if machine.casing is not None or machine.layout.kind is not None:
+        if machine.casing is not None or line.is_tilted_by_meshes:
             still = mean_equilibrium(machine_at_rest)
             strains = ring_strains(machine_at_rest, still.displacements)
             about = tilting_moments(machine_at_rest, still)

@@ -174,8 +174,10 @@ def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions:
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stack_series(error_series(machine)), at) + slow_errors(machine, at)
-    over = coordinates @ model.system.mesh_jacobian[:flanks].T - error - model.system.upper[:flanks]
-    return model.system.law.force(at, np.maximum(over, 0.0))
+    system = model.system
+    over = coordinates @ system.mesh_jacobian[:flanks].T - error - system.upper[:flanks]
+    phase_shifts = None if system.phase_shifts is None else coordinates @ system.phase_shifts.T
+    return system.contact_forces(at, np.maximum(over, 0.0), phase_shifts)
 
 
 def _instants(cycles: Integers, positions: int) -> Array:

@@ -69,8 +69,10 @@ def symmetries(system: System) -> tuple[Symmetry, ...]:
     Returns
     -------
     tuple of Symmetry
-        At most MAX_SYMMETRIES.
+        At most MAX_SYMMETRIES; none are sought where contacts move in the mesh cycle.
     """
+    if system.phase_shifts is not None:
+        return ()
     return _Search(system).list_symmetries()
 
 

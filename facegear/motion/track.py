@@ -267,7 +267,12 @@ class DenseMotion:
         back flank.
         """
         system, cycles = self.response.system, np.arange(self.per_period) / self.per_period
-        contact_forces = system.law.force(cycles, np.moveaxis(self.beyond, 0, -1))
+        phase_shifts = None
+        if system.phase_shifts is not None:
+            rows = np.ascontiguousarray(system.phase_shifts.T)
+            shifts = self.track.along(rows, np.zeros_like(rows))
+            phase_shifts = np.moveaxis(shifts.reshape(self.beyond.shape), 0, -1)
+        contact_forces = system.contact_forces(cycles, np.moveaxis(self.beyond, 0, -1), phase_shifts)
         forces = np.moveaxis(contact_forces, -1, 0).reshape(system.contacts, -1)
         if not system.two_flanks:
             return forces

@@ -26,8 +26,9 @@ from facegear.new_machine.wishes import RADIAL, MachineWishes, require_room, req
 from facegear.number_format import count_noun, format_number
 from facegear.schema.base import parse
 from facegear.schema.strength import Strength
+from facegear.strength.cylindrical import hertz_stress, pinion_form, standard_bending
 from facegear.strength.root_form import contact_ratio_factor
-from facegear.strength.safety import hertz_stress, permissible_bending, pinion_form, standard_bending
+from facegear.strength.safety import permissible_bending
 from facegear.teeth.analysis import path_curvatures
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_numbers import flank_numbers

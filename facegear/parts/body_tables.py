@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.parts.gear_body import SolvedBody, flank_direction, influence
+from facegear.parts.gear_body import SolvedBody, influence
 from facegear.parts.modes import HARMONICS, OrderModes, phase_factors, resonant_speeds, wave_frequencies
+from facegear.parts.reduced_body import RimForces, flank_influence
 from facegear.parts.section import section_properties
 from facegear.parts.wheel import Patch
 
@@ -17,14 +18,14 @@ DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
 """Number of orders, from 0, whose shapes are stored."""
+FLANKS = ("drive", "back")
+"""Names of the flanks of a mesh in tables."""
 COUPLINGS = ("hub_axial_sqrt_kg", "hub_spin_sqrt_kg_m", "hub_sideways_sqrt_kg", "hub_tilt_sqrt_kg_m")
 """Columns of Q with the hub's motion along the axis, round it, sideways, and tilting about a diameter at
 height 0."""
 
 
-def body_table(
-    gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
-) -> pd.DataFrame:
+def body_table(gear: str, body: SolvedBody, patch: Patch, forces: RimForces, angles: Array) -> pd.DataFrame:
     """Return mass, inertia and compliance of a body.
 
     Parameters
@@ -35,8 +36,8 @@ def body_table(
         The solved body.
     patch : Patch
         Area on which a mesh presses.
-    pressure_angle : float
-        Pressure angle, rad.
+    forces : RimForces
+        Unit forces of the flanks of a mesh.
     angles : (n,) array
         Angles of the meshes, rad.
 
@@ -44,15 +45,16 @@ def body_table(
     -------
     pd.DataFrame
         One row: mass (kg) and inertia (kg m2) of the section, number of coordinates of its modes, own
-        compliance along the line of action (m/N), the fraction of it that the modes hold, compliances that
-        they leave out (m/N, magnitudes): between the drive and the back flank of one mesh, and the largest
-        one between flanks of two meshes, NaN for a single mesh; and the largest relative change of a
-        frequency from a coarser mesh.
+        compliance along the drive flank's line of action (m/N), the fraction of it that the modes hold,
+        compliances that they leave out (m/N, magnitudes): between the drive and the back flank of one mesh,
+        and the largest one between flanks of two meshes, NaN for a single mesh; and the largest relative
+        change of a frequency from a coarser mesh.
     """
     mass, polar, diametral, _ = section_properties(body.section)
-    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+    drive, back = forces.directions
     residual = body.static(patch) - body.modal(patch)
     whole = influence(body.static(patch), 0.0, drive, drive)
+    between_flanks = influence(residual, forces.turns[0] - forces.turns[1], drive, back)
     changes = np.concatenate([*body.changes, np.zeros(1)])
     waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
     return pd.DataFrame(
@@ -65,25 +67,24 @@ def body_table(
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
-            "left_out_between_flanks_m_per_n": [abs(influence(residual, 0.0, drive, back))],
-            "left_out_between_meshes_m_per_n": [_left_out(residual, drive, back, angles)],
+            "left_out_between_flanks_m_per_n": [abs(between_flanks)],
+            "left_out_between_meshes_m_per_n": [_left_out(residual, forces, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
 
 
-def _left_out(residual: Array, drive: Array, back: Array, angles: Array) -> float:
+def _left_out(residual: Array, forces: RimForces, angles: Array) -> float:
     """Return the largest influence (m/N, magnitude) between flanks of two different meshes by given
     compliances.
 
-    residual (orders, 2, 2), m/N; drive, back (2,): directions of a force on either flank; angles (n,) of
-    the meshes, rad. It is nan for a single mesh.
+    residual (orders, 3, 3), m/N; forces: unit forces of the flanks; angles (n,) of the meshes, rad. It is
+    nan for a single mesh.
     """
-    apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
-    pairs = [(angle, direction) for angle in apart.tolist() for direction in (drive, back)]
-    return max(
-        (abs(influence(residual, angle, drive, direction)) for angle, direction in pairs), default=np.nan
-    )
+    at = (angles[:, None] + forces.turns).ravel()
+    mesh = np.repeat(np.arange(angles.size), forces.turns.size)
+    between = flank_influence(residual, np.tile(forces.directions, (angles.size, 1)), at)
+    return float(np.abs(between[mesh[:, None] != mesh]).max(initial=-1.0)) if angles.size > 1 else np.nan
 
 
 def mode_table(
@@ -217,8 +218,8 @@ def crossing_table(
 
 
 def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
-    """Return the static motions along the axis and round it below a mesh by unit forces, order by order,
-    hub held.
+    """Return the static motions along the axis, round it and along the radius below a mesh by unit forces,
+    order by order, hub held.
 
     Parameters
     ----------
@@ -233,7 +234,8 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
     -------
     pd.DataFrame
         One row an order: gear, order, axial_m_per_n (axial motion by an axial force), round_m_per_n
-        (tangential by tangential), axial_round_m_per_n (axial by tangential).
+        (tangential by tangential), axial_round_m_per_n (axial by tangential), radial_m_per_n (radial by
+        radial), axial_radial_m_per_n and round_radial_m_per_n (axial and tangential by radial).
     """
     static = body.static(patch)
     return pd.DataFrame(
@@ -243,12 +245,15 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
             "axial_m_per_n": static[:, 0, 0],
             "round_m_per_n": static[:, 1, 1],
             "axial_round_m_per_n": static[:, 0, 1],
+            "radial_m_per_n": static[:, 2, 2],
+            "axial_radial_m_per_n": static[:, 0, 2],
+            "round_radial_m_per_n": static[:, 1, 2],
         }
     )
 
 
 def influence_table(
-    gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, sign: float, meshes: dict[str, float]
+    gear: str, body: SolvedBody, patch: Patch, forces: RimForces, meshes: dict[str, float]
 ) -> pd.DataFrame:
     """Return the static motion of one flank against its force by a unit force on another, hub held.
 
@@ -260,10 +265,8 @@ def influence_table(
         The solved body.
     patch : Patch
         Area on which a mesh presses.
-    pressure_angle : float
-        Pressure angle, rad.
-    sign : float
-        1 for the upper gear, -1 for the lower, dimensionless.
+    forces : RimForces
+        Unit forces of the flanks of a mesh.
     meshes : dict[str, float]
         Angle of each pinion as the upper gear turns, rad, by its name.
 
@@ -272,16 +275,17 @@ def influence_table(
     pd.DataFrame
         One row for two flanks of two meshes or of one mesh: gear, first, first_flank, second,
         second_flank, compliance_m_per_n; for each two pinions, and each by itself, drive and drive, drive
-        and back, back and drive.
+        and back, back and drive, and back and back where flanks are no mirror images of each other.
     """
     static = body.static(patch)
-    flanks = {name: flank_direction(pressure_angle, name == "back") for name in ("drive", "back")}
-    rows = []
+    (drive, back), rows = forces.directions, []
+    are_mirror_images = not forces.turns.any() and np.array_equal(back, drive * np.array([1.0, -1.0, 1.0]))
+    pairs = ((0, 0), (0, 1), (1, 0)) if are_mirror_images else ((0, 0), (0, 1), (1, 0), (1, 1))
     for first, second in combinations_with_replacement(meshes, 2):
-        angle = sign * (meshes[first] - meshes[second])
-        for first_flank, second_flank in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
-            value = influence(static, angle, flanks[first_flank], flanks[second_flank])
-            rows.append((gear, first, first_flank, second, second_flank, value))
+        for i, j in pairs:
+            angle = meshes[first] + forces.turns[i] - meshes[second] - forces.turns[j]
+            value = influence(static, angle, forces.directions[i], forces.directions[j])
+            rows.append((gear, first, FLANKS[i], second, FLANKS[j], value))
     columns = ["gear", "first", "first_flank", "second", "second_flank", "compliance_m_per_n"]
     return pd.DataFrame(rows, columns=columns)
 

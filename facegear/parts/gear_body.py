@@ -12,15 +12,14 @@ from facegear.parts.body_mesh import BodyMesh, body_mesh
 from facegear.parts.elements import Elements
 from facegear.parts.matrices import BodyMatrices, body_matrices
 from facegear.parts.modes import FIRST_TRY, OrderModes, held_solver, order_modes
-from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.reduced_body import ReducedBody, flank_influence
 from facegear.parts.section import Section, section_properties
 from facegear.parts.wheel import Patch
 from facegear.sparse.matrices import Solve
 
 
 def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
-    """Return the means <W>, <V>, <W / r> below the teeth (rows) by unit loads on them (columns), hub
-    held.
+    """Return MEANS of `matrices` below the teeth (rows) by unit loads on them (columns), hub held.
 
     Parameters
     ----------
@@ -31,31 +30,11 @@ def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
 
     Returns
     -------
-    (3, 3) array
-        m/N for <W> and <V>; each W / r divides by m.
+    (5, 5) array
+        m/N for <W>, <V> and <U>; each W / r and each slope divides by m.
     """
-    means = np.stack(body.on_teeth)
+    means = body.on_teeth
     return np.asarray(means @ solve(means.T))
-
-
-def slope_compliance(body: BodyMatrices, solve: Solve) -> Array:
-    """Return <W>, <V>, <W / r> and the slope dW/dr by a unit moment on that slope, hub held.
-
-    Parameters
-    ----------
-    body : BodyMatrices
-        Matrices of the body.
-    solve : Solve
-        Function of `held_solver` for an order.
-
-    Returns
-    -------
-    (1, 4) array
-        1/N and rad/(N m).
-    """
-    slope = body.slope_on_teeth
-    displacements = solve(slope)
-    return np.array([[*(mean @ displacements for mean in body.on_teeth), slope @ displacements]])
 
 
 def modal_compliance(modes: OrderModes) -> Array:
@@ -68,8 +47,8 @@ def modal_compliance(modes: OrderModes) -> Array:
 
     Returns
     -------
-    (3, 3) array
-        m/N for <W> and <V>; each W / r divides by m.
+    (5, 5) array
+        m/N for <W>, <V> and <U>; each W / r and each slope divides by m.
     """
     return np.asarray((modes.teeth / (2.0 * np.pi * modes.frequencies) ** 2) @ modes.teeth.T)
 
@@ -103,39 +82,20 @@ def over_orders(computed_orders: Sequence[int], values: Array, last: int) -> Arr
     return result
 
 
-def flank_direction(pressure_angle: float, back: bool = False) -> Array:
-    """Return axial and tangential part of a unit flank force on the upper gear.
-
-    Parameters
-    ----------
-    pressure_angle : float
-        Pressure angle, rad.
-    back : bool
-        Whether it acts on the back flank.
-
-    Returns
-    -------
-    (2,) array
-        N for 1 N.
-    """
-    tangential = np.cos(pressure_angle)
-    return np.array([-np.sin(pressure_angle), -tangential if back else tangential])
-
-
 def influence(compliances: Array, angle: float, first: Array, second: Array) -> float:
     """Return the motion against its own force at one flank by a unit force at another, hub held.
 
-    A = sum_n Re[e^(-i n psi) a1* H_n a2], a = (P_axial, -i P_round).
+    A = sum_n Re[e^(-i n psi) a1* H_n a2], a = (P_axial, -i P_round, P_radial).
 
     Parameters
     ----------
-    compliances : (orders, 2, 2) array
+    compliances : (orders, 3, 3) array
         H_n from order 0, m/N.
     angle : float
         Angle of the first flank past the second, rad.
-    first : (2,) array
-        Axial and tangential part of a unit force on the first flank, dimensionless.
-    second : (2,) array
+    first : (3,) array
+        Axial, tangential and radial part of a unit force on the first flank, dimensionless.
+    second : (3,) array
         The parts of a unit force on the second flank, dimensionless.
 
     Returns
@@ -143,10 +103,7 @@ def influence(compliances: Array, angle: float, first: Array, second: Array) -> 
     float
         m/N.
     """
-    orders = np.arange(len(compliances))
-    a1, a2 = (np.array([axial, -1j * tangential]) for axial, tangential in (first, second))
-    terms = np.einsum("i,nij,j->n", a1.conj(), compliances, a2)
-    return float(np.real(np.exp(-1j * orders * angle) * terms).sum())
+    return float(flank_influence(compliances, np.stack([first, second]), np.array([angle, 0.0]))[0, 1])
 
 
 STATIC_ORDERS = 60
@@ -169,11 +126,8 @@ class SolvedBody:
         Section, mesh and elements from which it was computed.
     orders
         Modes of the orders 0, 1, 2, ...
-    compliances : (orders, 3, 3)
-        Compliance of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a
-        load needs.
-    slopes : (orders, 1, 4)
-        <W>, <V>, <W / r> and slope dW/dr by a unit moment on that slope, 1/N and rad/(N m).
+    compliances : (orders, 5, 5)
+        `mean_compliance` below the teeth, from order 0 up to the last that a load needs.
     changes
         Relative change (m,) of the frequencies of every order from a coarser mesh.
     """
@@ -183,13 +137,13 @@ class SolvedBody:
     elements: Elements
     orders: tuple[OrderModes, ...]
     compliances: Array
-    slopes: Array
     changes: tuple[Array, ...]
 
     def static(self, patch: Patch) -> Array:
         """Return the static compliances H_n at a mesh by circumferential order, with the hub held.
 
-        H_n maps unit forces along the axis and round it to W_p and V_p of the pitch point.
+        H_n maps unit forces along the axis, round it and along the radius to W_p, V_p and U_p of the pitch
+        point.
 
         Parameters
         ----------
@@ -198,13 +152,13 @@ class SolvedBody:
 
         Returns
         -------
-        (orders, 2, 2) array
+        (orders, 3, 3) array
             m/N, from order 0 to the last that a load needs.
         """
         return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
 
     def leaning(self, patch: Patch) -> Array:
-        """Return W_p, V_p and the slope dW/dr at a mesh by a unit moment on the slope, by order, hub
+        """Return W_p, V_p, U_p and the slope dW/dr at a mesh by a unit moment on the slope, by order, hub
         held.
 
         Parameters
@@ -214,10 +168,10 @@ class SolvedBody:
 
         Returns
         -------
-        (orders, 3) array
+        (orders, 4) array
             1/N and rad/(N m).
         """
-        return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
+        return np.stack([patch.leaning(order, below[-1]) for order, below in enumerate(self.compliances)])
 
     def modal(self, patch: Patch) -> Array:
         """Return the part of the static compliances that the computed modes hold.
@@ -229,10 +183,10 @@ class SolvedBody:
 
         Returns
         -------
-        (orders, 2, 2) array
+        (orders, 3, 3) array
             m/N.
         """
-        result = np.zeros((len(self.compliances), 2, 2))
+        result = np.zeros((len(self.compliances), 3, 3))
         for modes in self.orders[: len(result)]:
             result[modes.order] = patch.compliance(modes.order, modal_compliance(modes))
         return result
@@ -272,7 +226,7 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     mesh = body_mesh(section)
     body = body_matrices(section, mesh)
     modes: list[OrderModes] = []
-    compliances, slopes = {}, {}
+    compliances = {}
     for order in sorted({*range(last_order + 1), *sampled_orders(last_static)}):
         solve = held_solver(body, order)
         if order <= last_order:
@@ -280,14 +234,12 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
             modes.append(order_modes(body, order, max_frequency, solve, expected_count))
         if order <= last_static:
             compliances[order] = mean_compliance(body, solve)
-            slopes[order] = slope_compliance(body, solve)
     return SolvedBody(
         section=section,
         mesh=mesh,
         elements=body.elements,
         orders=tuple(modes),
         compliances=over_orders(tuple(compliances), np.stack(list(compliances.values())), last_static),
-        slopes=over_orders(tuple(slopes), np.stack(list(slopes.values())), last_static),
         changes=_changes(section, modes),
     )
 
@@ -368,7 +320,7 @@ def reduced_body(
         static=body.static(patch),
         damping_ratio=np.array(damping_ratio),
         pitch_height=np.array(patch.height),
-        slope=np.concatenate([patch.factor(modes.order) * modes.slope for modes in orders]),
+        slope=np.concatenate([patch.factor(modes.order) * modes.teeth[-1] for modes in orders]),
         leaning=body.leaning(patch),
         mass=np.array(mass),
         moment=np.array(moment),

@@ -35,6 +35,9 @@ ON_EDGE = 1e-8
 """Distance (m) from a line below which a point lies on it."""
 STRESSES = ((0, 0, 0), (1, 1, 2), (2, 2, 1), (0, 1, 3), (1, 0, 3))
 """Directions (r, height, round the axis) of the stress tensor, and where the stress stands in `strains`."""
+MEANS = ("<W>", "<V>", "<W / r>", "<U>", "slope")
+"""Motions below the teeth, uniform in r: means along the axis, round it, of W / r and along the radius, and
+the slope dW/dr of the straight line that fits W best."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,24 +94,9 @@ class BodyMatrices:
     centrifugal: sp.csr_matrix
 
     @cached_property
-    def on_teeth(self) -> tuple[Array, Array, Array]:
-        """Weights (dofs,) whose products with displacements are the means <W>, <V> and <W / r> (1/m)
-        along the teeth on height 0, uniform in r.
-        """
+    def on_teeth(self) -> Array:
+        """Weights (5, dofs) whose products with displacements are MEANS along the teeth on height 0."""
         return teeth_means(self.section, self.elements)
-
-    @cached_property
-    def slope_on_teeth(self) -> Array:
-        """Weights (dofs,), 1/m, whose product with displacements is the slope dW/dr of the straight line
-        that fits W best along the teeth on height 0.
-        """
-        inner, outer = self.section.teeth
-        middle, width = 0.5 * (inner + outer), outer - inner
-        slope = np.zeros(self.elements.size)
-        slope[W::3] = along_teeth(
-            self.section, self.elements, lambda parts, r: parts * 12.0 * (r - middle) / width**2
-        )
-        return slope
 
 
 def around(order: int) -> float:
@@ -217,8 +205,8 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
         elasticity[:, :, mesh.in_layer] = orthotropic(moduli, section.material.poisson_ratio, shears)[
             ..., None
         ]
-        height = np.asarray(elements.basis.global_coordinates())[1]
-        density[mesh.in_layer] *= layer.density_at(height[mesh.in_layer])
+        r, height = np.asarray(elements.basis.global_coordinates())[:, mesh.in_layer]
+        density[mesh.in_layer] *= layer.density_at(r, height)
     return elasticity[..., None], density
 
 
@@ -297,8 +285,8 @@ def rigid_motions(elements: Elements, order: int) -> Array:
     return motions
 
 
-def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Array]:
-    """Return means of the shapes along height 0 between the radii of the teeth.
+def teeth_means(section: Section, elements: Elements) -> Array:
+    """Return MEANS of the shapes along height 0 between the radii of the teeth.
 
     Parameters
     ----------
@@ -309,14 +297,17 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
 
     Returns
     -------
-    tuple of three (dofs,) arrays
-        Means <W> and <V>, m/m, and <W / r>, 1/m.
+    (5, dofs) array
+        <W>, <V> and <U>, m/m, <W / r> and the slope, 1/m, in the order of MEANS.
     """
+    inner, outer = section.teeth
+    middle, width = 0.5 * (inner + outer), outer - inner
     plain = along_teeth(section, elements, lambda parts, r: parts)
-    means = np.zeros((3, elements.size))
-    means[0, W::3], means[1, V::3] = plain, plain
+    means = np.zeros((len(MEANS), elements.size))
+    means[0, W::3], means[1, V::3], means[3, U::3] = plain, plain, plain
     means[2, W::3] = along_teeth(section, elements, np.divide)
-    return means[0], means[1], means[2]
+    means[4, W::3] = along_teeth(section, elements, lambda parts, r: parts * 12.0 * (r - middle) / width**2)
+    return means
 
 
 def along_teeth(

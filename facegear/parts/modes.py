@@ -31,10 +31,8 @@ class OrderModes:
         U, V, W of every shape of the elements.
     coriolis, stress, centrifugal : (m, m)
         g, S and P over the modes.
-    teeth : (3, m)
-        <W>, <V> and <W / r> on height 0 below the teeth.
-    slope : (m,)
-        dW/dr there, 1/m.
+    teeth : (5, m)
+        MEANS of `matrices` on height 0 below the teeth.
     hub : (2, m)
         Coupling of masses Q with the rigid motions of `rigid_motions`; none above order 1, where it is zero.
     hub_spin : (m,)
@@ -48,7 +46,6 @@ class OrderModes:
     stress: Array
     centrifugal: Array
     teeth: Array
-    slope: Array
     hub: Array
     hub_spin: Array
 
@@ -210,8 +207,7 @@ def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes:
         coriolis=factor * shapes.T @ (body.coriolis @ shapes),
         stress=shapes.T @ (body.stress.at(order) @ shapes),
         centrifugal=factor * shapes.T @ (body.centrifugal @ shapes),
-        teeth=np.stack(body.on_teeth) @ shapes,
-        slope=body.slope_on_teeth @ shapes,
+        teeth=body.on_teeth @ shapes,
         hub=factor * rigid.T @ (body.mass @ shapes),
         hub_spin=factor * rigid[:, 1] @ (body.coriolis @ shapes),
     )

@@ -23,7 +23,9 @@ COINCIDENCE = 1e-9
 
 @dataclass(frozen=True)
 class Layer:
-    """Teeth as a layer on the rim between two radii, from height `back` to `front`.
+    """Teeth as a layer on the rim between two radii, from height `back` to `front` in their middle.
+
+    Both faces rise by `slope` for each metre outwards.
 
     `density` and `hoop` are fractions of the body's density and of its Young's modulus round the axis,
     `shear` the fraction of the shear moduli that turn the teeth about their roots. At the roots the layer is
@@ -38,14 +40,17 @@ class Layer:
     hoop: float = 0.06
     shear: float = 0.15
     taper: float = 0.0
+    slope: float = 0.0
 
-    def density_at(self, height: Array) -> Array:
-        """Return the layer's fraction of the body's density at heights, linear from the roots to the tips
+    def density_at(self, r: Array, height: Array) -> Array:
+        """Return the layer's fraction of the body's density at points, linear from the roots to the tips
         by `taper`.
 
         Parameters
         ----------
-        height : array of any shape (...)
+        r : array of any shape (...)
+            Distances from the axis, m.
+        height : array of the same shape (...)
             Heights, m.
 
         Returns
@@ -53,7 +58,23 @@ class Layer:
         array of the same shape (...)
             Relative to the body's density.
         """
-        return self.density * (1.0 + self.taper * (self.back + self.front - 2.0 * height) / self.depth)
+        above = height - self.rise(r)
+        return self.density * (1.0 + self.taper * (self.back + self.front - 2.0 * above) / self.depth)
+
+    def rise(self, r: Array) -> Array:
+        """Return how much higher both faces stand at some radii than in the middle.
+
+        Parameters
+        ----------
+        r : array of any shape (...)
+            Distances from the axis, m.
+
+        Returns
+        -------
+        array of the same shape (...)
+            m.
+        """
+        return np.asarray(self.slope * (r - 0.5 * (self.inner_radius + self.outer_radius)))
 
     @property
     def depth(self) -> float:
@@ -63,7 +84,8 @@ class Layer:
     @property
     def corners(self) -> Array:
         """Corners of the layer, (4, 2): r and height, anticlockwise, m."""
-        return rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
+        corners = rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
+        return corners + np.stack([np.zeros(4), self.rise(corners[:, 0])], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,7 +333,9 @@ def section_properties(section: Section) -> tuple[float, float, float, float]:
         layer = section.layer
         properties += mass_properties(layer.corners, layer.density * section.density)
         area = np.pi * (layer.outer_radius**2 - layer.inner_radius**2)
-        volume_moment = area * layer.depth**2 * (layer.back + layer.front) / 6.0
+        width = layer.outer_radius - layer.inner_radius
+        heights = area * (layer.back + layer.front) / 6.0 + np.pi * layer.slope * width**3 / 18.0
+        volume_moment = layer.depth**2 * heights
         properties[2] -= layer.taper * layer.density * section.density * volume_moment
         properties[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
     return float(properties[0]), float(properties[1]), float(properties[2]), float(properties[3])

@@ -28,6 +28,7 @@ from facegear.parts.elements import elements_of
 from facegear.parts.matrices import elastic_stiffness
 from facegear.parts.section import GAUSS, Layer, Section, rectangle
 from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.face_gear_fillet import root_height
 from facegear.teeth.mesh_quality import hex_mesh
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.tooth_mesh import FeTooth, gear_tooth
@@ -66,9 +67,10 @@ def rim_below(section: Section) -> float:
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (r[:, None] - first[:, 0]) / (last[:, 0] - first[:, 0])
         height = first[:, 1] + part * (last[:, 1] - first[:, 1])
-    crossings = (part >= 0.0) & (part <= 1.0) & (height < layer.back - SAME_HEIGHT)
+    top = layer.back + layer.rise(r)
+    crossings = (part >= 0.0) & (part <= 1.0) & (height < top[:, None] - SAME_HEIGHT)
     back = np.where(crossings, height, -np.inf).max(axis=1)
-    return float(min(0.5 * GAUSS[1] @ (layer.back - back), width))
+    return float(min(0.5 * GAUSS[1] @ (top - back), width))
 
 
 SIZES = (0.5, 1.6, 0.9)
@@ -84,6 +86,8 @@ def tooth_energies(
 ) -> Array:
     """Compute twice the elastic energy of the whole ring of teeth and rim in two waves, by one cyclic
     sector.
+
+    The back of the rim is flat; below a root that is a cone it is as thick on the mean as `rim`.
 
     At the back of the rim the motion along the axis is prescribed: in the first wave its amplitude is 1
     m, in the second 1 m for each metre from the middle of the teeth outwards.
@@ -106,7 +110,10 @@ def tooth_energies(
     (2,) array
         J.
     """
-    design = replace(design, face_gear=replace(design.face_gear, rim_thickness=rim))
+    ends = np.array([design.face_gear.inner_radius, design.face_gear.outer_radius])
+    roots = root_height(design, ends)
+    lowest = rim - float(roots.mean() - roots.min())
+    design = replace(design, face_gear=replace(design.face_gear, rim_thickness=lowest))
     tooth = gear_tooth(design, MeshSizes(*(size * design.module for size in sizes)))
     mesh, numbers = hex_mesh(tooth.nodes, tooth.hexes)
     stiffness = assemble_stiffness(mesh, material)
@@ -287,6 +294,8 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
 def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
     """Compute twice the energy of a layer on a rim in the two waves of `tooth_energies`, of order ORDER.
 
+    Layer and rim are taken as flat, and as thick as they are on the mean.
+
     Parameters
     ----------
     layer : Layer
@@ -301,6 +310,7 @@ def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
     (2,) array
         J.
     """
+    layer = replace(layer, slope=0.0)
     mesh = strip(layer, rim)
     corners = rectangle(layer.inner_radius, layer.outer_radius, layer.back - rim, layer.back)
     whole = replace(section, corners=corners, is_edge_held=(False,) * 4, layer=layer)

@@ -2,10 +2,12 @@
 on.
 
 Area on which a mesh presses on the body of a face gear. A flank force turned into force and moment on height
-0, spread along the ring as a raised cosine, moves the pitch point in order n by W_p = c_n <W> axially and by
-V_p = c_n (<V> + n h <W / r>) round the axis, with c_n the transform of the patch and h the height of the
-pitch plane. The second part is the moment of the tangential force. Displacements are u_axial = Re[z e^(-i n
-psi)] W_p and u_round = Re[i z e^(-i n psi)] V_p.
+0, spread along the ring as a raised cosine and evenly across the face, moves the pitch point in order n by
+W_p = c_n <W> axially, by V_p = c_n (<V> + n h <W / r>) round the axis and by U_p = c_n (<U> - h slope) along
+the radius, with c_n the transform of the patch, h the height of the pitch plane and the slope that of the
+line which fits W best across the face. The second parts are the moments of the tangential and of the radial
+force. Displacements are u_axial = Re[z e^(-i n psi)] W_p, u_round = Re[i z e^(-i n psi)] V_p and u_radial =
+Re[z e^(-i n psi)] U_p.
 """
 
 from dataclasses import dataclass
@@ -43,12 +45,21 @@ class Web:
 
 @dataclass(frozen=True)
 class Rim:
-    """Rectangle from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are."""
+    """Rim from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are.
+
+    `front` is the height at the inner radius; it rises by `slope` for each metre outwards.
+    """
 
     inner_radius: float
     outer_radius: float
     back: float
     front: float
+    slope: float = 0.0
+
+    @property
+    def outer_front(self) -> float:
+        """Height of the front at the outer radius, m."""
+        return self.front + self.slope * (self.outer_radius - self.inner_radius)
 
 
 def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
@@ -82,7 +93,7 @@ def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
         (rim.inner_radius, low_out),
         (rim.inner_radius, rim.back),
         (rim.outer_radius, rim.back),
-        (rim.outer_radius, rim.front),
+        (rim.outer_radius, rim.outer_front),
         (rim.inner_radius, rim.front),
         (rim.inner_radius, high_out),
         (hub.outer_radius, high_in),
@@ -135,9 +146,12 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
         limit = f"below `outer radius of the hub`, {1e3 * hub.outer_radius:g} mm"
         raise InvalidInput("bore radius of the hub", 1e3 * hub.bore_radius, limit)
     at_hub, at_rim = web_ends(hub, web, rim)
-    for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
-        if body.back >= body.front:
-            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
+    lowest_fronts = hub.front, min(rim.front, rim.outer_front)
+    for part, body, front, (low, high) in zip(
+        ("hub", "rim"), (hub, rim), lowest_fronts, (at_hub, at_rim), strict=True
+    ):
+        if body.back >= front:
+            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * front:g} mm")
         if low < body.back - COINCIDENCE or high > body.front + COINCIDENCE:
             limit = (
                 f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "
@@ -209,55 +223,58 @@ class Patch:
         return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
-        """Return W_p and V_p at a mesh from the means below the teeth: c_n <W> and c_n (<V> + n height <W
-        / r>).
+        """Return W_p, V_p and U_p at a mesh from the means below the teeth: c_n <W>, c_n (<V> + n height <W
+        / r>) and c_n (<U> - height slope).
 
         Parameters
         ----------
         order : int
             The order n.
-        teeth : (3, ...) array
-            <W>, <V> (m) and <W / r> (m/m).
+        teeth : (5, ...) array
+            MEANS of `matrices`: <W>, <V> (m), <W / r> (m/m), <U> (m) and slope (m/m).
 
         Returns
         -------
-        (2, ...) array
-            Axial and circumferential displacement of the pitch point, m.
+        (3, ...) array
+            Axial, circumferential and radial displacement of the pitch point, m.
         """
-        lever = order * self.height
-        return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
+        levers = np.zeros((3, 5))
+        levers[[0, 1, 2], [0, 1, 3]] = 1.0
+        levers[1, 2], levers[2, 4] = order * self.height, -self.height
+        return np.asarray(self.factor(order) * (levers @ teeth))
 
     def leaning(self, order: int, responses: Array) -> Array:
-        """Return W_p, V_p and slope by a unit moment on the slope.
+        """Return W_p, V_p, U_p and slope by a unit moment on the slope.
 
         Parameters
         ----------
         order : int
             The order n.
-        responses : (4,) array
-            <W>, <V>, <W / r> and slope by a unit moment on the slope, 1/N and rad/(N m).
+        responses : (5,) array
+            MEANS of `matrices` by a unit moment on the slope, 1/N and rad/(N m).
 
         Returns
         -------
-        (3,) array
+        (4,) array
             1/N and rad/(N m).
         """
         factor = self.factor(order)
-        return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
+        return factor * np.append(self.rows(order, responses), factor * responses[-1])
 
     def compliance(self, order: int, below: Array) -> Array:
-        """Return H_n: W_p and V_p at a mesh (rows) by unit forces along the axis and round it (columns).
+        """Return H_n: W_p, V_p and U_p at a mesh (rows) by unit forces along the axis, round it and along the
+        radius (columns).
 
         Parameters
         ----------
         order : int
             The order n.
-        below : (3, 3) array
-            Compliance of the means <W>, <V> and <W / r>, m/N.
+        below : (5, 5) array
+            Compliance of MEANS of `matrices`, m/N for <W>.
 
         Returns
         -------
-        (2, 2) array
+        (3, 3) array
             m/N.
         """
         return self.rows(order, self.rows(order, below).T)

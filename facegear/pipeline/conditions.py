@@ -298,7 +298,9 @@ def machine(case: Case) -> bool:
 
 
 def strength(case: Case) -> bool:
-    """Whether section strength is given.
+    """Whether section strength rates the teeth.
+
+    It does where it gives their materials (`strength.pinion`, `strength.face_gear`).
 
     Parameters
     ----------
@@ -310,4 +312,5 @@ def strength(case: Case) -> bool:
     bool
         True if so.
     """
-    return case.values["strength"] is not None
+    section = case.values["strength"]
+    return section is not None and section["pinion"] is not None

@@ -40,9 +40,10 @@ def displaced_contact(
     displaced.
 
     The displacements are rigid motions, given in frames of the machine and added to the errors of
-    assembly of the config. The pinion's x is the tangent as the upper gear's teeth move, y the gears'
-    axis towards the upper gear, z outwards along the pinion. The gear's x points to azimuth 0, y a
-    quarter turn further, z from the lower to the upper gear. Nothing is loaded: the flanks are rigid.
+    assembly of the config. The pinion's x is the tangent as the upper gear's teeth move, z outwards along
+    the pinion, y square to both, the gears' axis towards the upper gear where axes are at a right angle.
+    The gear's x points to azimuth 0, y a quarter turn further, z from the lower to the upper gear. Nothing
+    is loaded: the flanks are rigid.
 
     Parameters
     ----------
@@ -119,14 +120,15 @@ def _mesh_place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: 
 
     The tilt height (m) is that of the point about which the gear tilts, over the pinion's axis and
     towards the gear. Without a machine the place is that of an upper gear and a pinion at azimuth 0,
-    with the pitch radius as tilt height. Raises ConfigError for a name that does not exist.
+    tilted in the pitch plane. Raises ConfigError for a name that does not exist.
     """
+    teeth = ToothNumbers.of_config(tooth_pair.model_dump())
     if transmission is None:
         if mesh is not None:
             raise ConfigError("mesh", mesh, "left out: the config has no transmission")
-        pitch_radius = 0.5e-3 * tooth_pair.module_mm * tooth_pair.pinion_teeth
-        return MeshPlace("upper", 0.0, pitch_radius)
-    machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
+        height = teeth.pitch_radius if teeth.kind is None else teeth.kind.pitch_height(1.0)
+        return MeshPlace("upper", 0.0, height)
+    machine = layout(transmission, teeth)
     names = machine.mesh_names
     i, g = machine.meshes[names.index(require_choice(mesh, names, "mesh")) if mesh is not None else 0]
     return MeshPlace(machine.gears[g].side.value, float(machine.angles[i]) % tau, machine.tilt_distance(g))
@@ -249,14 +251,15 @@ class DisplacedContact:
 
         - offset_um, gear_axial_um, shaft_angle_error_deg: errors of assembly that the displacements
           amount to, those of the config included, as the flank meets them; outward_um: shift of the
-          pinion along its axis, which moves the ends of its face alone.
+          pinion along its axis. It moves the ends of its face, and closes or opens flanks with a helix or a
+          taper; the ends of spur pinions stay.
         - approach_um: how far the flanks have come together along the line of action from as assembled,
           exactly; deflection_um: its first order, which a lumped mesh counts as its deflection;
           closing_um: the rest, as in `operating_pose().table()`. A positive approach presses or turns
           the gear ahead.
-        - backlash_um: normal backlash of the displaced pair.
-        - unloaded_path_mm: place of the contact along the pinion's axis; to_inner_end_mm,
-          to_outer_end_mm: its distances from the ends of the face, negative beyond them.
+        - backlash_um: backlash of the displaced pair along the drive flank's normal.
+        - unloaded_path_mm: place of the contact along the pinion's axis, where it passes the pitch radius;
+          to_inner_end_mm, to_outer_end_mm: its distances from the ends of the face, negative beyond them.
         - pressure_angle_deg: slope of the common normal there; NaN for flanks with modifications or
           deviations and beyond the ends of the face, where the contact is searched.
 

@@ -76,7 +76,7 @@ def require_section(name: str | None, values: Values) -> None:
         Where the section is missing.
     """
     section = STAGES[name].section if name else ""
-    if section and values[section] is None:
+    if section and value_at(values, section) is None:
         raise ConfigError(section, None, f"given, as rule {name} needs it")
 
 

@@ -34,7 +34,7 @@ REPORT_TABLES = {
     "sharing_map": ["curves", "inputs", "points", "advice", "reasons"],
     "following": ["groups"],
     "contact": ["ltca", "by_torque"],
-    "root_stress": ["summary"],
+    "root_stress": ["summary", "by_flank"],
     "contact_studies": ["table"],
     "tolerances": ["percentiles", "fractions", "sampling"],
     "lubrication": ["by_torque", "limits"],
@@ -47,9 +47,12 @@ REPORT_TABLES = {
     "posed_stress": ["by_mesh"],
     "shafts": ["seats", "bearings", "torsion"],
     "bearing_life": ["loads", "stiffness", "life"],
+    "casing": ["modes"],
+    "casing_loads": ["seats", "feet", "sharing", "modes"],
+    "casing_response": ["sensors"],
 }
 """Tables of each stage that the report reads."""
-OWN_NAMES = ("shafts", "poses", "bearings")
+OWN_NAMES = ("shafts", "poses", "bearings", "casing")
 """Folders with tables that have the same names as others of the machine."""
 
 

@@ -30,6 +30,7 @@ BEARING_LIFE = (
 """Caption of the table of lives of rolling bearings."""
 BEARING_LIFE_SHOWN = (
     *("pinion", "bearing", "l10_hours", "l10r_hours", "modified_hours", "required_hours", "is_enough"),
+    "remark",
 )
 """Columns of lives of rolling bearings that are not folded."""
 
@@ -68,7 +69,7 @@ def bearing_life_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     """
     if "bearings_life" not in tables:
         return []
-    life = tables["bearings_life"]
+    life = tables["bearings_life"].replace({"remark": {"": np.nan}})
     is_whole = life["bin"] == "all"
     whole, bins = (life[rows].dropna(axis="columns", how="all") for rows in (is_whole, ~is_whole))
     return [

@@ -20,18 +20,20 @@ from facegear.report.chapter_tables import (
     FOLLOWING_SHOWN,
     LONG_TABLE,
     MODE_CONTACTS,
-    ROOT_STRESS,
     SHAFT_TABLES,
     STUDY_COLUMNS,
     bearing_reactions,
+    casing_tables,
     errors_chapter,
     friction_tables,
     jump_tables,
     rating_and_safety_tables,
+    root_stress_tables,
     scorecard_chapter,
     stress_over_speed_tables,
 )
 from facegear.report.contents import (
+    CASING,
     CHAPTERS,
     FRICTION,
     POSES,
@@ -226,7 +228,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], main=BY_TORQUE_SHOWN)]
     if title == "Root stress" and "root_stress" in tables:
-        return [Table(ROOT_STRESS, tables["root_stress"])]
+        return root_stress_tables(tables)
     if title == FRICTION and "friction" in tables:
         return friction_tables(tables)
     if title == STUDIED_CONTACT and "studies" in tables:
@@ -240,7 +242,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             else []
         )
         running_tables += stress_over_speed_tables(tables, speed_rpm)
-        return [*report_tables, *running_tables, Table(ROOT_STRESS, tables["root_stress"])]
+        return [*report_tables, *running_tables, *root_stress_tables(tables)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4])]
     if title == "Modes" and "frequencies" in tables:
@@ -255,6 +257,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == SHAFTS:
         shaft_tables = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
         return [*[table for table in shaft_tables if len(table.frame)], *bearing_tables(tables)]
+    if title == CASING:
+        return casing_tables(tables)
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, bearing_reactions(tables["bearings"]))] if "bearings" in tables else []
         return [*bearings, *jump_tables(tables)]

@@ -29,10 +29,12 @@ BEARINGS = (
 """Caption of the table of bearing forces."""
 ROOT_STRESS = (
     "Largest and smallest stress of each fillet over a passage. loaded: the fillet below the flank that "
-    "carries the load; radius: distance from the gear's axis; tangent: angle between the fillet and the "
-    "tooth's middle line"
+    "carries the load; radius: distance from the gear's axis, of a pinion the place along its own; tangent: "
+    "angle between the fillet and the tooth's middle line"
 )
 """Caption of the table of root stress."""
+EVERY_FLANK = "Root stress of every flank that differs: drive and coast flanks of each gear"
+"""Caption of the table of root stress by flank."""
 SHAFT_TABLES = {
     "shafts_seats": "Stiffness of what each pinion sits on, without moments, and where it stands under the "
     "mean torques",
@@ -57,7 +59,8 @@ SAFETY = (
     "what tip "
     "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
     "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
-    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given. caveat: "
+    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given; "
+    "undecided: no method could rate it. caveat: "
     "what the method does not know; it never changes the colour"
 )
 """Caption of the table of safety."""
@@ -156,6 +159,28 @@ LOSSES = (
     "together, over the power in"
 )
 """Caption of the table of losses."""
+
+
+def root_stress_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of root stress: of the upper gear's drive flank, and of all flanks where they differ.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the case by name: `root_stress`, and `root_stress_by_flank` if it is there.
+
+    Returns
+    -------
+    list of Table
+        One table, or two where teeth or errors of assembly make flanks differ; the second one is folded.
+    """
+    report_tables = [Table(ROOT_STRESS, tables["root_stress"])]
+    by_flank = tables.get("root_stress_by_flank", pd.DataFrame())
+    columns = [name for name in by_flank if name not in ("gear", "flank")]
+    different = by_flank.drop_duplicates(columns)
+    if len(different) > len(tables["root_stress"]):
+        report_tables.append(Table(EVERY_FLANK, different, is_folded=True))
+    return report_tables
 
 
 def rating_and_safety_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -347,6 +372,43 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
         for name in ("static", "peak"):
             table[f"{name}_{direction}_n"] = forces[f"{name}_n"].to_numpy()
     return table
+
+
+CASING_TABLES = {
+    "casing_load_sharing": "Forces of the meshes under the mean torques, on the casing and on fixed seats",
+    "casing_seat_motions": "Motions of the seats under the mean torques, along and about the casing's axes",
+    "casing_feet": "What the casing presses on its feet, in sum and beside what is applied; on ground: "
+    "bearings without a seat",
+    "casing_machine_modes": "Modes of the machine on its casing, by the part of their kinetic energy in the "
+    "casing",
+}
+"""Captions of the tables of the casing."""
+
+
+def casing_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of the machine on its casing.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the case by name; those of CASING_TABLES and `casing_sensors` are read, and may be missing.
+
+    Returns
+    -------
+    list of Table
+        The tables, and the largest acceleration of every sensor by orders of the mesh.
+    """
+    report_tables = [
+        Table(words, tables[name], is_folded=len(tables[name]) > LONG_TABLE)
+        for name, words in CASING_TABLES.items()
+        if name in tables
+    ]
+    if "casing_sensors" in tables:
+        loudest = first_largest_rows(tables["casing_sensors"], "acceleration_m_per_s2", ["sensor", "order"])
+        columns = ["sensor", "order", "acceleration_m_per_s2", "speed_rpm", "frequency_hz"]
+        words = "Largest acceleration of every sensor by orders of the mesh"
+        report_tables.append(Table(words, loudest[columns], is_folded=len(loudest) > LONG_TABLE))
+    return report_tables
 
 
 def errors_chapter(tables: Mapping[str, pd.DataFrame]) -> Chapter:

@@ -38,7 +38,7 @@ CAPTIONS = {
     "which ends at the mean force of its last level; "
     "beside a row: the fraction of the time past it.",
     "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
-    "mode_shapes": "Shapes of typical modes.",
+    "mode_shapes": "Shapes of typical modes, of at most twelve kinds from low frequencies on.",
     "body_shapes": "Section of the face gear and its first mode shapes at a crest, exaggerated, hub held; "
     "grey: at rest, the brighter the larger the motion, that round the axis included.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
@@ -139,6 +139,8 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 FRICTION = "Friction and heat"
 """Title of the chapter on friction."""
+CASING = "Casing"
+"""Title of the chapter on the casing."""
 SHAFTS = "Shafts"
 """Title of the chapter on shafts."""
 SHARING = "Load sharing"
@@ -214,7 +216,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         ("shafts", "bearings"),
     ),
     (
-        "Casing",
+        CASING,
         "The machine on its casing: forces of the meshes with and without it, modes of both together, and "
         "what its sensors feel, linear about the mean load.",
         ("casing_sharing", "casing_campbell", "casing_acceleration"),

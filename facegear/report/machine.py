@@ -157,6 +157,8 @@ NUMBERS = {
     "contact_ratio": ("Contact ratio, unloaded", "", 4),
     "face_width_mm": ("Face width of the gear", "mm", 4),
     "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 4),
+    "inner_limit_mm": ("Smallest radius that the face may have; it has no largest", "mm", 4),
+    "outer_limit_mm": ("Largest radius that the face may have; it has no smallest", "mm", 4),
     "backlash_um": ("Backlash along the line of action, smallest", "µm", 4),
     "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 4),
     "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 4),
@@ -278,11 +280,11 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
     path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
     shift = path_radius - nominal
-    face_limits = limits["inner_undercut"], limits["outer_pointing"]
+    inner, outer = limits["inner_undercut"], limits["outer_pointing"]
     numbers = {
         "contact_ratio": pair["contact_ratio"],
         "face_width_mm": radii["gear_outer"] - radii["gear_inner"],
-        "face_limits_mm": tuple(limit for limit in face_limits if limit is not None),
+        **_face_limits(inner, outer),
         "backlash_um": pair["backlash_um"]["smallest"],
     }
     if not has_spur_teeth(pair["design_si"]):
@@ -293,6 +295,14 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
         "unloaded_path_mm": path_radius,
         "path_shift_mm": shift if abs(shift) > 1e-3 else 0.0,
     }
+
+
+def _face_limits(inner: float | None, outer: float | None) -> dict[str, Any]:
+    """Return the limits of the face radii, mm, by the names of their key numbers; None for no limit."""
+    if inner is not None and outer is not None:
+        return {"face_limits_mm": (inner, outer)}
+    limits = {"inner_limit_mm": inner, "outer_limit_mm": outer}
+    return {name: limit for name, limit in limits.items() if limit is not None}
 
 
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
@@ -321,8 +331,9 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _materials(values: Mapping[str, Any]) -> str:
-    """State the material cards by which the pair is rated; empty without section `strength`."""
-    if (strength := values["strength"]) is None:
+    """State the material cards by which the pair is rated; empty where teeth are not rated."""
+    strength = values["strength"]
+    if strength is None or strength["pinion"] is None:
         return ""
     pinion, gear = (strength[body]["card"]["name"] for body in ("pinion", "face_gear"))
     return f"Rated as {pinion}. " if pinion == gear else f"Rated as {pinion} (pinion) and {gear} (gear). "

@@ -5,7 +5,7 @@ from operator import itemgetter
 
 import pandas as pd
 
-from facegear.number_format import format_number
+from facegear.number_format import begin_with_capital, format_number
 from facegear.report.table import Table
 
 MESHES = (
@@ -158,7 +158,7 @@ def _pattern(loaded_meshes: pd.DataFrame) -> str:
         if left.min() > 0.0:
             sentences.append(f"the pattern stays {format_number(left.min(), 2)} mm from the tip of the {tip}")
     text = "; ".join(sentences)
-    return f"{text[0].upper()}{text[1:]}."
+    return f"{begin_with_capital(text)}."
 
 
 def _changes(loaded_meshes: pd.DataFrame) -> str:
@@ -170,7 +170,7 @@ def _changes(loaded_meshes: pd.DataFrame) -> str:
         for column, words in CHANGE_COLUMNS.items()
         if column in loaded_meshes and len(loaded_meshes)
     ]
-    return f"{'; '.join(parts)}.".capitalize() if parts else ""
+    return begin_with_capital(f"{'; '.join(parts)}.") if parts else ""
 
 
 def _force(meshes: pd.DataFrame) -> str:
@@ -200,4 +200,5 @@ def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
         f"{row.face_end_mm:.4g} mm"
         for row in leaving_contacts.itertuples()
     ]
-    return f"{'; '.join(sentences).capitalize()} (loads up to {largest_percent:.0f} % were looked at)."
+    text = begin_with_capital("; ".join(sentences))
+    return f"{text} (loads up to {largest_percent:.0f} % were looked at)."

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.number_format import count_noun, format_number
+from facegear.number_format import begin_with_capital, count_noun, format_number
 from facegear.report.data_sheet import ROUNDING_OF_POWER
 from facegear.ties import first_largest_row
 
@@ -16,8 +16,10 @@ NOT_COMPUTED = "Not computed."
 """Reason of a verdict that is not known."""
 BEYOND = "beyond torques solved"
 """Remark on loads beyond the torques solved."""
-MARKS = {"tip edges": "edge contact", "fillets": "fillet contact"}
+MARKS = {"tip edges": "edge contact", "fillets": "fillet contact", "not compared": "not in ISO 6336"}
 """First words of a rating's caveat, and the mark that stands for it."""
+UNRATED = "Not rated: edges carry all load, where pressure has no limit."
+"""Reason of the verdict on a failure that no method could rate."""
 RATED_FAILURES = {"bending": "Bending", "pitting": "Pitting"}
 """Rated failures in words."""
 OIL = {"scuffing": "Scuffing", "micropitting": "Micropitting"}
@@ -136,13 +138,17 @@ def nearest_rating(rating: pd.DataFrame) -> Any:
 
 def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     """Judge bending or pitting (`failure`, a key of RATED_FAILURES) from table `rating`: red if any
-    safety is below the required one. The reason names the row of the smallest safety over required
-    safety.
+    safety is below the required one, else grey if a flank has no rating. The reason names the row of the
+    smallest safety over required safety.
     """
     rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
     rows = rating[rating["failure"] == failure]
     if rows.empty:
-        return _without_result(values, "strength", RATED_FAILURES[failure])
+        if len(rating):
+            return Verdict(RATED_FAILURES[failure], GREY, UNRATED)
+        section = values["strength"]
+        rated_teeth = None if section is None else section["pinion"]
+        return _without_result({"strength": rated_teeth}, "strength", RATED_FAILURES[failure])
     row = nearest_rating(rows)
     colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
     same_flank = rows[
@@ -153,14 +159,20 @@ def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
     if colour == RED and row.reason.startswith("damage"):
         reason += f"{row.reason}; "
     reason += f"safety {row.safety:.2f} of {row.required:g} by {row.method}{other_ways}."
-    flanks = rows[["body", "flank"]].drop_duplicates()
+    flanks = rating[["body", "flank"]].drop_duplicates()
+    unrated_count = len(flanks) - len(rows[["body", "flank"]].drop_duplicates())
     failing = rows.loc[rows["safety"] < rows["required"], ["body", "flank"]].drop_duplicates()
     if len(failing) > 1:
         reason += f" {len(failing)} of {count_noun(len(flanks), 'flank')} are below what is required."
+    if unrated_count:
+        colour = GREY if colour == GREEN else colour
+        reason += f" {unrated_count} of {count_noun(len(flanks), 'flank')} are not rated."
     marks = [mark for words, mark in MARKS.items() if rows["caveat"].str.contains(words).any()]
     if not rows["within_torques_solved"].all():
         marks.append(BEYOND)
-    return Verdict(RATED_FAILURES[failure], colour, _sentence(reason), tuple(marks), _failure(row, colour))
+    return Verdict(
+        RATED_FAILURES[failure], colour, begin_with_capital(reason), tuple(marks), _failure(row, colour)
+    )
 
 
 def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Verdict:
@@ -209,7 +221,7 @@ def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], 
     red = row[column] < SAFE
     marks = () if row["within_torques_solved"] else (BEYOND,)
     status = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""
-    return Verdict(OIL[failure], RED if red else GREEN, _sentence(reason), marks, status)
+    return Verdict(OIL[failure], RED if red else GREEN, begin_with_capital(reason), marks, status)
 
 
 def _margin(kelvin: float) -> str:
@@ -397,8 +409,3 @@ def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, 
             return GREY, "As required so far:", f"{reason}, {absent} not computed.{tail}"
         return GREEN, "As required:", f"{reason}.{tail}"
     return GREY, "Not judged:", f"no limit was given.{tail}"
-
-
-def _sentence(text: str) -> str:
-    """Return text with a capital at the beginning."""
-    return text[:1].upper() + text[1:]

@@ -142,6 +142,7 @@ def warnings(
                 "Motion", WITHIN_LIMITS, f"{dynamics_value}; the teeth as assembled have {teeth:.1f} µm."
             )
     yield from _undecided_warnings(tables)
+    yield from _casing_warnings(tables)
     yield from _sweep_warnings(tables)
     for row in nominal(tables).itertuples():
         if row.lost_fraction > 0.0:
@@ -182,6 +183,24 @@ def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWa
     if len(names):
         words = f"Too little load to tell from rounding, taken as open: {', '.join(names)}."
         yield ResultWarning("Modes", WITHIN_LIMITS, words)
+
+
+def _casing_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
+    """Yield warnings of modes and of vibration above half of the highest mode of the casing with seats and
+    feet held, from tables `casing_modes`, `casing_machine_modes` and `casing_sensors`.
+    """
+    if "casing_modes" not in tables:
+        return
+    own_modes = tables["casing_modes"]
+    highest = own_modes.loc[own_modes["held"] == "feet and seats", "frequency_hz"].max()
+    reason = f"half of the highest mode kept with seats and feet held, {highest:.0f} Hz"
+    for name, rows in (("casing_machine_modes", "modes of the machine"), ("casing_sensors", "sensor values")):
+        if name not in tables:
+            continue
+        is_valid = tables[name]["is_valid"].astype(bool)
+        if not is_valid.all():
+            words = f"{(~is_valid).sum()} of {len(is_valid)} {rows} lie above {reason}"
+            yield ResultWarning("Casing", WITHIN_LIMITS, f"{words}: raise transmission.casing.modes.")
 
 
 def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:

@@ -61,7 +61,22 @@ class RollingSection(Section):
     clearance_diametral_um: float = Field(
         0.0, ge=-200, le=1000, description="in operation; negative: elements are pressed in"
     )
-    first_element_deg: float = Field(0.0, ge=-360, le=360, description="of the first element, from x to y")
+    cage: Literal["averaged", "first_element_deg"] | None = Field(
+        None,
+        description="averaged: mean over all places of the elements; first_element_deg: they stand still; "
+        "null: averaged, or where first_element_deg says",
+    )
+    first_element_deg: float | None = Field(
+        None, ge=-360, le=360, description="of the first element, from x to y; null: 0 where elements stand"
+    )
+    centrifugal: bool = Field(
+        False,
+        description="whether elements feel centrifugal force at dynamics.speed_rpm, in the duty cycle at the "
+        "speed of each bin; preload is that at rest",
+    )
+    speed_rpm: float | None = Field(
+        None, ge=0, le=1e6, description="of the shaft, filled in where centrifugal is true"
+    )
     shoulder_angle_deg: float | None = Field(
         None, gt=0, lt=90, description="largest contact angle that the shoulders allow; null: not checked"
     )
@@ -93,8 +108,8 @@ class RollingSection(Section):
 
     @model_validator(mode="after")
     def _can_be(self) -> "RollingSection":
-        """Check keys, pitch diameter and clearance; all mistakes are reported together."""
-        require_all(self._check_keys, self._check_pitch, self._check_clearance)
+        """Check keys, cage, pitch diameter and clearance; all mistakes are reported together."""
+        require_all(self._check_keys, self._check_cage, self._check_pitch, self._check_clearance)
         return self
 
     def _check_keys(self) -> None:
@@ -108,6 +123,16 @@ class RollingSection(Section):
         for key in (*of_angle, *of_rollers):
             if getattr(self, key) is None:
                 refuse(key, None, f"given for a bearing of type {self.type}")
+
+    def _check_cage(self) -> None:
+        """Refuse a place of the first element in a cage that is averaged over all places."""
+        if self.cage == "averaged" and self.first_element_deg is not None:
+            refuse("first_element_deg", self.first_element_deg, "left out where cage is averaged")
+
+    @property
+    def is_averaged(self) -> bool:
+        """Whether the bearing is averaged over all places of its elements."""
+        return self.cage == "averaged" or (self.cage is None and self.first_element_deg is None)
 
     def _check_pitch(self) -> None:
         """Refuse a pitch diameter on which neighbouring elements would overlap."""

@@ -195,6 +195,29 @@ class ShaftSection(Section):
     )
     preload: PreloadSection | None = Field(None, description="of two rolling bearings; null: none")
 
+    def at_speed(self, speed_rpm: float) -> "ShaftSection":
+        """Return the shaft with its speed filled in where rolling elements feel centrifugal force.
+
+        Parameters
+        ----------
+        speed_rpm : float
+            Speed of the shaft, rpm.
+
+        Returns
+        -------
+        ShaftSection
+            The shaft itself where none do.
+        """
+        bearings = tuple(
+            bearing
+            if bearing.rolling is None or not bearing.rolling.centrifugal
+            else bearing.model_copy(
+                update={"rolling": bearing.rolling.model_copy(update={"speed_rpm": speed_rpm})}
+            )
+            for bearing in self.bearings
+        )
+        return self if bearings == self.bearings else self.model_copy(update={"bearings": bearings})
+
     @property
     def length_mm(self) -> float:
         """Sum of the lengths of all segments, mm, rounded to 9 decimals against rounding errors."""

@@ -45,6 +45,12 @@ UNREAD = (
     *("amplitude_n_per_m", "truncation_error_n_per_m", "sampling_error_n_per_m"),
     *("e_sin_um", "e_cos_um", "e_peak_to_peak_um", "e_truncation_error_um"),
     *("mean_average_n_per_m", "mean_local_n_per_m"),
+    *(
+        f"{gear}_{flank}_{part}_n_per_m"
+        for gear in ("lower", "upper")
+        for flank in ("drive", "back")
+        for part in ("sin", "cos")
+    ),
 )
 """Further columns of the table `stiffness/harmonics.csv`, which is read back as it was written."""
 CURVE = ("pinion_angle_deg", "k_n_per_m")
@@ -93,6 +99,12 @@ class MeshStiffness(Section):
     table: tuple[HarmonicSection, ...] = Field(
         default=(), max_length=MAX_ORDER + 1, description="for source harmonics: orders rising"
     )
+    coast: tuple[HarmonicSection, ...] = Field(
+        default=(),
+        max_length=MAX_ORDER + 1,
+        description="for source harmonics: orders rising from 0 of the coast flanks, over the cycle of the "
+        "mirrored pair, in which they drive; none: as the drive flanks",
+    )
     csv: str | None = Field(
         default=None,
         min_length=1,
@@ -118,8 +130,9 @@ class MeshStiffness(Section):
         """
         if not isinstance(values, Mapping):
             return values
-        if isinstance(values.get("table"), list):
-            values = {**values, "table": tuple(values["table"])}
+        for key in ("table", "coast"):
+            if isinstance(values.get(key), list):
+                values = {**values, key: tuple(values[key])}
         if not isinstance(name := values.get("csv"), str):
             return values
         if values.get("table"):
@@ -135,8 +148,9 @@ class MeshStiffness(Section):
     @model_validator(mode="after")
     def _complete(self) -> "MeshStiffness":
         """Refuse keys that the source of the stiffness lacks or does not use."""
-        if self.source != "harmonics" and self.table:
-            refuse("source", self.source, "harmonics, as a table is given")
+        for key in ("table", "coast"):
+            if self.source != "harmonics" and getattr(self, key):
+                refuse("source", self.source, f"harmonics, as a {key} is given")
         if self.source == "fem_scaled" and self.mean_n_per_m is None:
             refuse("mean_n_per_m", None, "given, as source fem_scaled scales the curve to it")
         if self.mesh_law == "load_dependent":
@@ -145,9 +159,10 @@ class MeshStiffness(Section):
             return self
         if not self.table:
             refuse("table", [], "given, here or in csv, where source is harmonics")
-        for number, (terms, next_terms) in enumerate(pairwise(self.table)):
-            if next_terms.order <= terms.order:
-                refuse(f"table[{number + 1}].order", next_terms.order, "above the order before it")
+        for key in ("table", "coast"):
+            for number, (terms, next_terms) in enumerate(pairwise(getattr(self, key))):
+                if next_terms.order <= terms.order:
+                    refuse(f"{key}[{number + 1}].order", next_terms.order, "above the order before it")
         _check_mean(self.mean_n_per_m, self.table[0])
         if (mean := self.mean) is not None and mean < SOFTEST:
             requirement = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
@@ -156,6 +171,8 @@ class MeshStiffness(Section):
         if minimum <= 0.0:
             condition = "harmonics so small beside the mean that k(t) stays positive"
             refuse("table", f"k(t) falls to {minimum:.4g} N/m", condition)
+        if self.coast:
+            _check_coast(self)
         return self
 
     @property
@@ -178,12 +195,49 @@ def given_series(section: MeshStiffness) -> Harmonics:
     Harmonics
         Mesh stiffness over a mesh period, N/m.
     """
-    order = max((row.order for row in section.table), default=0)
+    return _series(section.table, section.mean or 0.0)
+
+
+def coast_series(section: MeshStiffness) -> Harmonics | None:
+    """Return the Fourier series of the stiffness of coast flanks written in the config.
+
+    Parameters
+    ----------
+    section : MeshStiffness
+        Section `mesh_stiffness` of the config.
+
+    Returns
+    -------
+    Harmonics or None
+        Stiffness over a mesh period of the mirrored pair, N/m; None where they are as the drive flanks.
+    """
+    return _series(section.coast, section.coast[0].cos_n_per_m) if section.coast else None
+
+
+def _series(rows: Sequence[HarmonicSection], mean: float) -> Harmonics:
+    """Return the Fourier series with these orders and mean, N/m; orders left out are zero."""
+    order = max((row.order for row in rows), default=0)
     sine, cosine = np.zeros(order + 1), np.zeros(order + 1)
-    for row in section.table:
+    for row in rows:
         sine[row.order], cosine[row.order] = row.sin_n_per_m, row.cos_n_per_m
-    cosine[0] = section.mean or 0.0
+    cosine[0] = mean
     return Harmonics(sine, cosine)
+
+
+def _check_coast(section: MeshStiffness) -> None:
+    """Refuse orders of coast flanks without their mean, and a stiffness of theirs that is not positive."""
+    first = section.coast[0]
+    if first.order > 0 or first.sin_n_per_m != 0.0 or first.cos_n_per_m < SOFTEST:
+        requirement = f"order 0 with sin_n_per_m 0 and the mean, at least {SOFTEST:g}, for its cos_n_per_m"
+        refuse("coast[0]", first.model_dump(), requirement)
+    series = (
+        _series(section.coast, first.cos_n_per_m)
+        .truncate(section.harmonics_kept)
+        .scale_variation(section.variation)
+    )
+    if series.minimum <= 0.0:
+        condition = "harmonics so small beside the mean that k(t) stays positive"
+        refuse("coast", f"k(t) falls to {series.minimum:.4g} N/m", condition)
 
 
 def _check_law(section: MeshStiffness) -> None:

@@ -77,10 +77,14 @@ class BearingStrength(Section):
 
 
 class Strength(Section):
-    """Safety and life of the pair under a duty cycle."""
+    """Safety and life of the pair, and life of rolling bearings, under a duty cycle."""
 
-    pinion: BodyStrength = Field(description="material and loading of the pinion's teeth")
-    face_gear: BodyStrength = Field(description="material and loading of the face gear's teeth")
+    pinion: BodyStrength | None = Field(
+        None, description="material and loading of the pinion's teeth; null: teeth are not rated"
+    )
+    face_gear: BodyStrength | None = Field(
+        None, description="material and loading of the face gear's teeth; null: teeth are not rated"
+    )
     duty: tuple[DutySection, ...] = Field(default=(), max_length=10000, description="bins of the duty cycle")
     duty_csv: str | None = Field(
         default=None,
@@ -101,7 +105,9 @@ class Strength(Section):
     )
 
     bearings: BearingStrength | None = Field(
-        None, description="rolling bearings of the shafts; null: their lives are not judged"
+        None,
+        description="rolling bearings of the shafts, whose duty cycle needs neither pinion nor face_gear; "
+        "null: their lives are not judged",
     )
 
     @model_validator(mode="before")
@@ -125,9 +131,30 @@ class Strength(Section):
     @model_validator(mode="after")
     def _complete(self) -> "Strength":
         """Check factors, duty cycle and material cards; all mistakes are reported together."""
-        cards = (partial(self._check_card, name) for name in BODIES)
-        require_all(self._check_factors, self._check_counted, self._check_duty, *cards)
+        cards = (partial(self._check_card, name) for name in BODIES if self.rates_teeth)
+        require_all(self._check_bodies, self._check_factors, self._check_counted, self._check_duty, *cards)
         return self
+
+    @property
+    def rates_teeth(self) -> bool:
+        """Whether teeth are rated; otherwise the duty cycle is that of rolling bearings alone."""
+        return self.pinion is not None and self.face_gear is not None
+
+    def _check_bodies(self) -> None:
+        """Refuse one body without the other, and factors of teeth that are not rated."""
+        if self.rates_teeth:
+            return
+        for name, partner in (BODIES, BODIES[::-1]):
+            if getattr(self, name) is None and getattr(self, partner) is not None:
+                refuse(name, None, f"given beside {partner}, or both left out: teeth are rated by both")
+        if self.bearings is None:
+            refuse("bearings", None, "given where pinion and face_gear are left out: nothing is rated")
+        if self.load_factors == "machine":
+            requirement = "left out where teeth are not rated (pinion, face_gear)"
+            refuse("load_factors", "machine", requirement)
+        for key in ("dynamic_factor", "mesh_load_factor"):
+            if getattr(self, key) != 1.0:
+                refuse(key, getattr(self, key), "left out where teeth are not rated (pinion, face_gear)")
 
     def _check_factors(self) -> None:
         """Refuse load factors that are given although they are taken from the machine."""
@@ -141,7 +168,8 @@ class Strength(Section):
         """
         for name in BODIES:
             for key in ("cycles_per_turn", "both_ways"):
-                if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):
+                value = getattr(getattr(self, name), key, None)
+                if self.load_factors == "machine" and value:
                     refuse(f"{name}.{key}", value, "left out where load_factors is machine")
 
     def _check_duty(self) -> None:

@@ -138,6 +138,11 @@ class Transmission(Section):
         description="geometric: the half turn between both sides of a pinion counts for every pinion; "
         "printed: for the first alone, as in equation (11) of the paper",
     )
+    mesh_place: Literal["even", "moving"] = Field(
+        "even",
+        description="place of the teeth in the mesh cycle, in motion: even: by the mean speed alone; moving: "
+        "a pinion that turns or floats ahead of it carries its meshes along",
+    )
     torque: Torque
     single_meshes: dict[str, SingleMesh] = Field({}, description="by `pinion/lower` or `pinion/upper`")
     single_pinions: dict[str, SinglePinion] = Field({}, description="by the pinion's name")
@@ -171,6 +176,22 @@ class Transmission(Section):
             Section of the shaft; None for a pinion on a bearing stiffness.
         """
         return self.shafts.get(pinion.name) or self.shafts.get(pinion.role)
+
+    def at_speed(self, speed_rpm: float) -> "Transmission":
+        """Return the section with the speed filled in where rolling elements feel centrifugal force.
+
+        Parameters
+        ----------
+        speed_rpm : float
+            Speed of the pinions, rpm.
+
+        Returns
+        -------
+        Transmission
+            The section itself where none do.
+        """
+        shafts = {name: shaft.at_speed(speed_rpm) for name, shaft in self.shafts.items()}
+        return self if shafts == self.shafts else self.model_copy(update={"shafts": shafts})
 
     def _check_names(self) -> None:
         """Refuse settings of single parts that the machine does not have."""
@@ -229,6 +250,8 @@ class Transmission(Section):
                 refuse(key, names, "none where mesh_kinematics is printed")
         if self.operating_pose != "none":
             refuse("operating_pose", self.operating_pose, "none where mesh_kinematics is printed")
+        if self.mesh_place != "even":
+            refuse("mesh_place", self.mesh_place, "even where mesh_kinematics is printed")
         for key, value in (
             ("pinion.clearance_um", self.pinion.bearing_clearance_um or None),
             ("pinion.runout", self.pinion.runout),

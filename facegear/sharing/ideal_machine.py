@@ -139,7 +139,7 @@ def departures(machine: Machine) -> list[str]:
     """
     layout, flaws = machine.layout, machine.imperfections
     pinions = [i for i, pinion in enumerate(layout.pinions) if pinion.role in IDLERS]
-    stiffness = machine.mean_stiffness[[i in pinions for i, _ in layout.meshes]]
+    stiffness = machine.mean_flank_stiffness[2 * [i in pinions for i, _ in layout.meshes]]
     angles = np.sort(np.mod(layout.angles[pinions], 2.0 * np.pi))
     gaps = np.diff(np.append(angles, angles[:1] + 2.0 * np.pi))
     bearings = np.array([layout.pinions[i].body.bearing[:2] for i in pinions])

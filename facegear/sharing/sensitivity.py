@@ -244,7 +244,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     # At rest a drive line is what the layout has in its place, unless meshes tilt the pinions. Rolling
     # bearings know their load; where both flanks share a line of action they are springs.
     line = machine.drive_line
-    if line is not None and layout.kind is None:
+    if line is not None and (kinematics is not layout.kinematics or not line.is_tilted_by_meshes):
         keeps_rolling = bool(line.rolling) and kinematics is layout.kinematics
         line = _rolling_alone(line, new_layout) if keeps_rolling else None
     elif line is not None:

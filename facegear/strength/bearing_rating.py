@@ -46,8 +46,18 @@ LIFE_COLUMNS = (
     *("pinion", "bearing", "bin", "torque_n_m", "speed_rpm", "hours", "load_rating_n"),
     *("equivalent_load_n", "reference_load_n", "l10_million", "l10r_million", "modified_million"),
     *("l10_hours", "l10r_hours", "modified_hours", "damage_share", "required_hours", "is_enough", "basis"),
+    "remark",
 )
-"""Columns of lives; rows of the whole duty cycle have hours alone."""
+"""Columns of lives; rows of the whole duty cycle have hours alone. `remark` is NO_LIFE_LIMIT or PRESSED_IN
+where a life is infinite."""
+
+
+NO_LIFE_LIMIT = "carries nothing: its life has no limit"
+"""Remark on a bearing whose elements carry nothing."""
+
+
+PRESSED_IN = "carries no load of the shaft, so that L10 has no limit; L10r counts the pressed-in elements"
+"""Remark on a bearing whose elements are pressed in and balance each other."""
 
 
 CURVE_COLUMNS = (
@@ -169,8 +179,8 @@ def life_table(
     Returns
     -------
     pd.DataFrame
-        LIFE_COLUMNS; not a number where a life is not asked for or not known. `is_enough` judges the modified
-        life where there is one, else L10r.
+        LIFE_COLUMNS; infinite without load, not a number where a life is not asked for or not known.
+        `is_enough` judges the modified life where there is one, else L10r.
     """
     rows: list[tuple[object, ...]] = []
     lives = []
@@ -221,7 +231,8 @@ def _bin_rows(
             *(life.equivalent_load[number], life.reference_load[number]),
             *(life.basic[number], life.reference[number], life.modified_reference[number]),
             *hours[:, number],
-            *(shares[number], np.nan, "", basis_of(np.isfinite(hours[2, number]))),
+            *(shares[number], np.nan, "", basis_of(not np.isnan(hours[2, number]))),
+            _remark(hours[0, number], hours[1, number]),
         )
 
 
@@ -234,16 +245,23 @@ def _whole_row(
     required_hours: float | None,
 ) -> tuple[object, ...]:
     """Return the row of LIFE_COLUMNS of a bearing, or of all, over the whole duty cycle."""
-    _, reference, modified_life = hours
+    basic, reference, modified_life = hours
     judged_life = reference if np.isnan(modified_life) else modified_life
     verdict = "" if required_hours is None else ("yes" if judged_life >= required_hours else "no")
     return (
         *(name, letter, WHOLE, np.nan, np.nan, sum(load.hours for load in bins), rating),
         *5 * (np.nan,),
         *hours,
-        *(1.0, np.nan if required_hours is None else required_hours, verdict),
-        basis_of(not np.isnan(modified_life)),
+        *(float(np.isfinite(reference)), np.nan if required_hours is None else required_hours, verdict),
+        *(basis_of(not np.isnan(modified_life)), _remark(basic, reference)),
     )
+
+
+def _remark(basic: float, reference: float) -> str:
+    """Return why lives by ISO 281 and by ISO/TS 16281, h, are infinite; empty where the first is not."""
+    if not np.isinf(basic):
+        return ""
+    return NO_LIFE_LIMIT if np.isinf(reference) else PRESSED_IN
 
 
 def basis_of(has_modified: bool) -> str:

@@ -131,8 +131,8 @@ DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
-    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
-    and name not in ("reason", "caveat")
+    if name not in ("standard_bending_safety", "pitting_safety", "standard_pitting_safety")
+    and name not in ("life_hours", "reliability", "reason", "caveat")
 )
 """Columns of `safety` that hold a value in every row."""
 MAY_BE_UNKNOWN = ("largest_error_mpa", "at_30_deg_mpa")

@@ -1,6 +1,6 @@
 """Root stress and pressure under the mesh forces of a running machine, at one speed and over speed."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -15,7 +15,7 @@ from facegear.ties import first_largest_rows
 def dynamic_stress_table(
     forces: Mapping[str, Array],
     positions: Mapping[str, Array],
-    base_radius: float,
+    arms: Mapping[str, float],
     contacts: Mapping[str, Mapping[str, FlankContact]],
 ) -> pd.DataFrame:
     """Tabulate the stress of each mesh under its forces.
@@ -27,11 +27,12 @@ def dynamic_stress_table(
     Parameters
     ----------
     forces : Mapping[str, array]
-        Forces along the line of action by mesh, (n,) N, negative on the back flank, evenly in time.
+        Forces along the normal of the loaded flank by mesh, (n,) N, negative on the back flank, evenly in
+        time.
     positions : Mapping[str, array]
         Positions of the loaded flank in the mesh cycle by mesh, (n,), in pitches, in [0, 1).
-    base_radius : float
-        Base radius of the pinion, m.
+    arms : Mapping[str, float]
+        Torque on the pinion over the force of each flank along its normal, m.
     contacts : Mapping[str, Mapping[str, FlankContact]]
         Contacts by mesh and flank.
 
@@ -40,37 +41,42 @@ def dynamic_stress_table(
     DataFrame
         One row a mesh, columns as DYNAMIC_STRESS_COLUMNS.
     """
-    rows = [_row(mesh, force, positions[mesh], base_radius, contacts[mesh]) for mesh, force in forces.items()]
+    rows = [_row(mesh, force, positions[mesh], arms, contacts[mesh]) for mesh, force in forces.items()]
     return pd.DataFrame(rows, columns=list(DYNAMIC_STRESS_COLUMNS))
 
 
 def _row(
-    mesh: str, force: Array, positions: Array, base_radius: float, contacts: Mapping[str, FlankContact]
+    mesh: str,
+    force: Array,
+    positions: Array,
+    arms: Mapping[str, float],
+    contacts: Mapping[str, FlankContact],
 ) -> tuple[str | float | bool, ...]:
     """Return the row of DYNAMIC_STRESS_COLUMNS of one mesh: forces, dynamic factor, stress and pressure
     in MPa.
 
     `force` (n,), N, is negative on the back flank; `positions` (n,), in pitches, are those of the loaded
-    flank; `contacts` go by flank. The dynamic factor is the largest over the mean magnitude of the force.
+    flank; `arms` (m) and `contacts` go by flank. The dynamic factor is the largest over the mean magnitude of
+    the force.
     """
     mean, max_force = float(np.abs(force).mean()), float(np.abs(force).max())
     by_flank = {"drive": np.maximum(force, 0.0), "back": np.maximum(-force, 0.0)}
     loaded_flanks = {flank: part for flank, part in by_flank.items() if part.any()} or {
         "drive": by_flank["drive"]
     }
-    steady = contacts[max(loaded_flanks, key=lambda flank: float(loaded_flanks[flank].mean()))]
-    max_torque = {flank: base_radius * float(part.max()) for flank, part in loaded_flanks.items()}
+    torques = {flank: arms[flank] * part for flank, part in loaded_flanks.items()}
+    steady_flank = max(torques, key=lambda flank: float(torques[flank].mean()))
+    steady, steady_torque = contacts[steady_flank], arms[steady_flank] * mean
+    max_torque = {flank: float(part.max()) for flank, part in torques.items()}
     stresses: list[float] = []
     for body in BODIES:
-        running = (
-            contacts[at].history[body](base_radius * part, positions) for at, part in loaded_flanks.items()
-        )
+        running = (contacts[at].history[body](part, positions) for at, part in torques.items())
         bounds = (contacts[at].history[body].over_passage(torque) for at, torque in max_torque.items())
         largest = max(float(values.max()) for values in running)
-        stresses += [steady.tension[body](base_radius * mean), largest, max(bounds)]
-    stresses.append(steady.pressure.at(base_radius * mean))
+        stresses += [steady.tension[body](steady_torque), largest, max(bounds)]
+    stresses.append(steady.pressure.at(steady_torque))
     stresses.append(largest_pressure((contacts[at], torque) for at, torque in max_torque.items()))
-    within = steady.is_solved(base_radius * mean) and steady.is_solved(base_radius * max_force)
+    within = all(steady.is_solved(torque) for torque in (steady_torque, max(max_torque.values())))
     factor = max_force / mean if mean > 0.0 else np.nan
     return (mesh, mean, max_force, factor, *(1e-6 * stress for stress in stresses), within)
 
@@ -157,8 +163,8 @@ def _without_rounding(values: Array, exact: Array) -> Array:
 def stress_table(
     forces: pd.DataFrame,
     static_force: float,
-    base_radius: float,
-    contacts: Mapping[str, Collection[FlankContact]],
+    arms: Mapping[str, float],
+    contacts: Mapping[str, Mapping[str, FlankContact]],
 ) -> pd.DataFrame:
     """Tabulate the stress under the largest force of each motion.
 
@@ -171,31 +177,31 @@ def stress_table(
         Columns as FORCE_COLUMNS.
     static_force : float
         Largest force of all meshes at rest, N; 0 without load.
-    base_radius : float
-        Base radius of the pinion, m.
-    contacts : Mapping[str, Collection[FlankContact]]
-        Contacts of each mesh, one a flank.
+    arms : Mapping[str, float]
+        Torque on the pinion over the force of each flank along its normal, m.
+    contacts : Mapping[str, Mapping[str, FlankContact]]
+        Contacts by mesh and flank.
 
     Returns
     -------
     DataFrame
         Columns as STRESS_OVER_SPEED_COLUMNS.
     """
-    torques = base_radius * forces["largest_force_n"].to_numpy()
-    loads = list(zip([dict.fromkeys(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
+    loads = [
+        list(dict.fromkeys((contact, arms[flank] * force) for flank, contact in contacts[mesh].items()))
+        for mesh, force in zip(forces["mesh"], forces["largest_force_n"].to_numpy(), strict=True)
+    ]
     max_force = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
         dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
         **{
             f"{body}_mpa": [
-                1e-6 * max(contact.tension[body](torque) for contact in near) for near, torque in loads
+                1e-6 * max(contact.tension[body](torque) for contact, torque in near) for near in loads
             ]
             for body in BODIES
         },
-        pressure_mpa=[
-            1e-6 * largest_pressure((contact, torque) for contact in near) for near, torque in loads
-        ],
-        within_torques_solved=[next(iter(near)).is_solved(torque) for near, torque in loads],
+        pressure_mpa=[1e-6 * largest_pressure(near) for near in loads],
+        within_torques_solved=[all(contact.is_solved(torque) for contact, torque in near) for near in loads],
         worst=forces["largest_force_n"] >= (1.0 - EQUAL_FORCES) * max_force,
     )
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[

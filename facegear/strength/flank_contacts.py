@@ -18,7 +18,8 @@ from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.materials import FlankDuty
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 from facegear.strength.root_tables import root_from_arrays
-from facegear.teeth.placement import FLANKS, GEARS
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import FLANKS, GEARS, pair_at
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,6 +155,22 @@ def flank_contacts(stress: Arrays, by_flank: "pd.DataFrame") -> dict[tuple[str, 
     return contacts
 
 
+def normal_arms(design: PairDesign) -> dict[str, float]:
+    """Return the torque on the pinion over the force of each flank along its normal.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    dict[str, float]
+        m, by FLANKS; the same at either gear.
+    """
+    return {flank: pair_at(design, GEARS[0], flank).normal_arm for flank in FLANKS}
+
+
 def contacts_of(
     mesh: str, contacts: Mapping[tuple[str, str], FlankContact], gears: Sequence[str]
 ) -> dict[str, FlankContact]:
@@ -175,8 +192,26 @@ def contacts_of(
     dict[str, FlankContact]
         Contacts by flank.
     """
-    gear = gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
+    gear = gear_of(mesh, gears)
     return {flank: contacts[gear, flank] for flank in FLANKS}
+
+
+def gear_of(mesh: str, gears: Sequence[str]) -> str:
+    """Return the gear of a mesh by the name under which contact knows it.
+
+    Parameters
+    ----------
+    mesh : str
+        Name of the mesh, `pinion/gear`.
+    gears : Sequence[str]
+        Gears of the machine.
+
+    Returns
+    -------
+    str
+        The mesh's own gear; of a machine with a single gear that gear.
+    """
+    return gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
 
 
 def largest_pressure(loads: Iterable[tuple[FlankContact, float]]) -> float:
@@ -218,23 +253,22 @@ def met_by(duty: FlankDuty, gears: Sequence[str]) -> list[tuple[str, str]]:
     return [(gear, flank) for gear in own_gear or gears for flank in flanks]
 
 
-def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
-    """Return the root stress of the contact with the largest stress under the flank's largest load.
+def worst_contact(duty: FlankDuty, contacts: Mapping[tuple[str, str], FlankContact]) -> tuple[str, str]:
+    """Return the contact with the largest root stress under the flank's largest load.
 
     Parameters
     ----------
     duty : FlankDuty
         Loads of the rated flank.
-    contacts : Sequence[FlankContact]
-        Contacts of that flank.
+    contacts : Mapping[tuple[str, str], FlankContact]
+        Contacts of that flank, by gear or mesh and by flank.
 
     Returns
     -------
-    RootStress
-        Root stress of the rated gear (duty.gear) in that contact.
+    tuple[str, str]
+        Gear or mesh, and flank, of that contact.
     """
-    roots = [contact.roots[duty.gear] for contact in contacts]
-    return max(roots, key=lambda root: root.at_torque(duty.largest).max())
+    return max(contacts, key=lambda at: contacts[at].roots[duty.gear].at_torque(duty.largest).max())
 
 
 def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:

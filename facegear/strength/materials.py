@@ -3,7 +3,7 @@
 A load counts by its number and size in every bin; damage adds up by Miner's rule (Miner 1945).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import log, nan
 from typing import TYPE_CHECKING
@@ -98,7 +98,7 @@ def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool
 
 
 def machine_duty(
-    spectrum: "pd.DataFrame", duty: Sequence[DutyBin], ratio: float, arm: float
+    spectrum: "pd.DataFrame", duty: Sequence[DutyBin], ratio: float, arms: Mapping[str, float]
 ) -> tuple[FlankDuty, ...]:
     """Return the loads of every flank that carries load in a machine, each from its own meshes.
 
@@ -113,8 +113,8 @@ def machine_duty(
         Bins of the duty cycle.
     ratio : float
         Turns of a face gear for one of a pinion, dimensionless.
-    arm : float
-        Torque on the pinion of a mesh force of 1 N, with the application factor, m.
+    arms : Mapping[str, float]
+        Torque on the pinion of a force of 1 N along the normal of each flank, with the application factor, m.
 
     Returns
     -------
@@ -135,9 +135,9 @@ def machine_duty(
                 gear=str(gear),
                 flank=str(flank),
                 bins=bins,
-                torque=arm * rows["force_n"].to_numpy(),
+                torque=arms[str(flank)] * rows["force_n"].to_numpy(),
                 cycles=turns[str(gear)] * passes[bins] * rows["fraction"].to_numpy(),
-                opposite=arm * np.array(opposite),
+                opposite=arms[other_flank] * np.array(opposite),
                 meshes=tuple(rows["mesh"]),
             )
         )

@@ -15,11 +15,11 @@ from facegear.arrays import AnyArray, Array, Arrays
 from facegear.machine.poses.surface import PoseSurface
 from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import contact_pressure
-from facegear.strength.flank_contacts import FlankContact, contacts_of
+from facegear.strength.flank_contacts import FlankContact, contacts_of, gear_of
 from facegear.strength.materials import FlankDuty
 from facegear.strength.rating import LoadStresses
 from facegear.strength.root_stress import RootStress
-from facegear.teeth.placement import FLANKS
+from facegear.teeth.placement import FLANKS, GEARS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -121,8 +121,8 @@ def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> Flank
 def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, AnyArray]:
     """Return the root stress of one contact as arrays that are stored beside those of others.
 
-    Names begin with `contact` and the number: torque_n_m, and of each body passage and stress_pa. The
-    arrays along_m, angle_rad and error of each body are common to all contacts.
+    Names begin with `contact` and the number: torque_n_m, and of each body passage, stress_pa and the places
+    and errors of its gauges, along_m, angle_rad and error, which differ from flank to flank of some teeth.
 
     Parameters
     ----------
@@ -138,12 +138,13 @@ def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, An
     """
     arrays: dict[str, AnyArray] = {f"contact{number}_torque_n_m": roots[BODIES[0]].torques}
     for body, root in roots.items():
-        arrays[f"contact{number}_{body}_passage"] = root.passage
-        arrays[f"contact{number}_{body}_stress_pa"] = root.stress
+        name = f"contact{number}_{body}"
         arrays |= {
-            f"{body}_along_m": root.along,
-            f"{body}_angle_rad": root.angle,
-            f"{body}_error": root.error,
+            f"{name}_passage": root.passage,
+            f"{name}_stress_pa": root.stress,
+            f"{name}_along_m": root.along,
+            f"{name}_angle_rad": root.angle,
+            f"{name}_error": root.error,
         }
     return arrays
 
@@ -171,9 +172,9 @@ def solved_contacts(arrays: Arrays, by_torque: "pd.DataFrame") -> list[FlankCont
                 torques=arrays[f"contact{number}_torque_n_m"],
                 passage=arrays[f"contact{number}_{body}_passage"],
                 stress=arrays[f"contact{number}_{body}_stress_pa"],
-                along=arrays[f"{body}_along_m"],
-                angle=arrays[f"{body}_angle_rad"],
-                error=arrays[f"{body}_error"],
+                along=arrays[f"contact{number}_{body}_along_m"],
+                angle=arrays[f"contact{number}_{body}_angle_rad"],
+                error=arrays[f"contact{number}_{body}_error"],
             )
             for body in BODIES
         }
@@ -197,6 +198,8 @@ class PosedContacts:
         Load of each mesh at rest, N m on the pinion.
     surface
         Response surface that tells how another pose changes the stress.
+    gears
+        Gears of the machine; one alone is the upper one, whatever the machine calls it.
     """
 
     contacts: Mapping[str, Mapping[str, FlankContact]]
@@ -204,6 +207,7 @@ class PosedContacts:
     loaded_flanks: Mapping[str, str]
     torque: Mapping[str, float]
     surface: PoseSurface
+    gears: Sequence[str] = GEARS
 
     def met_by(self, duty: FlankDuty) -> list[tuple[str, str]]:
         """Return the mesh and flank of the contacts of a rated flank.
@@ -260,9 +264,10 @@ class PosedContacts:
                 torque, contact = duty.torque[rows], self.contacts[mesh][flank]
                 ends = self.contact_poses[mesh, flank], contact_poses[int(number), mesh, flank]
                 tensions = np.array([contact.tension[duty.gear](value) for value in torque])
-                tensions = tensions * stress_ratio(self.surface, ROOTS[duty.gear], *ends)(torque)
+                surface = self.surface.of_flank(gear_of(mesh, self.gears), flank)
+                tensions = tensions * stress_ratio(surface, ROOTS[duty.gear], *ends)(torque)
                 pressures = np.array([contact.pressure.at(value) for value in torque])
-                pressures = pressures * stress_ratio(self.surface, PRESSURE, *ends)(torque)
+                pressures = pressures * stress_ratio(surface, PRESSURE, *ends)(torque)
                 tension[rows] = np.maximum(tension[rows], tensions)
                 pressure[rows] = np.fmax(pressure[rows], pressures)
         return LoadStresses(tension, pressure)
@@ -391,13 +396,15 @@ def posed_contacts(
                 float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row])
             )
         rest = ContactPose(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
-        factors = {
-            name_: stress_ratio(surface, name_, rest, contact_poses[name, other_flank]) for name_ in STRESSES
-        }
+        flank_surface, end = (
+            surface.of_flank(gear_of(name, gears), other_flank),
+            contact_poses[name, other_flank],
+        )
+        factors = {stress: stress_ratio(flank_surface, stress, rest, end) for stress in STRESSES}
         at_rest = contacts_of(name, assembled_contacts, gears)[other_flank]
         contacts[name] = {
             loaded_flank: contacts_by_number[int(arrays["contact"][row])],
             other_flank: scale_contact(at_rest, factors),
         }
         loaded_flanks[name], torque[name] = loaded_flank, float(arrays["mesh_torque_n_m"][row])
-    return PosedContacts(contacts, contact_poses, loaded_flanks, torque, surface)
+    return PosedContacts(contacts, contact_poses, loaded_flanks, torque, surface, gears)

@@ -20,14 +20,24 @@ from facegear.strength.root_stress import RootStress
 
 POINTS = 61
 """Number of points of a curve of allowed stress."""
-WORST_FIRST = ("red", "green")
+RED, OPEN_VERDICT = "red", "undecided"
+"""Verdicts of a flank that is less safe than required, and of one whose pitting could not be rated."""
+WORST_FIRST = (RED, OPEN_VERDICT, "green")
 """Verdicts from the worst to the best."""
+SAFETY_WAYS = (
+    *(("bending", "finite elements"), ("bending", "ISO 6336-3")),
+    *(("pitting", "contact analysis"), ("pitting", "ISO 6336-2")),
+)
+"""Failure and method of each safety in SAFETY_COLUMNS, in their order."""
+UNRATED = "pitting: not rated, as edges carry all load, where pressure has no limit"
+"""Reason of an undecided verdict."""
 
 
 def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) -> pd.DataFrame:
     """Tabulate the safeties of each flank and the first failure to come, one row a flank.
 
-    Reliability is the product of those of both failures, each by its worst method.
+    Reliability is the product of those of both failures, each by its worst method. A flank whose pitting has
+    no rating is `undecided` unless its bending is red.
 
     Parameters
     ----------
@@ -54,19 +64,20 @@ def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) ->
             ).any()
         ]
         edge_load, edge_length = pressure.edge_at(ways[0].duty.largest)
+        verdicts = [rating.verdict for rating in ways]
+        reasons = [f"{rating.failure}: {rating.reason}" for rating in _worst_ways(ways) if rating.reason]
+        if all(rating.failure != "pitting" for rating in ways):
+            verdicts.append(OPEN_VERDICT)
+            reasons.append(UNRATED)
         rows.append(
             (
-                *(body, flank, min((rating.verdict for rating in ways), key=WORST_FIRST.index)),
-                safety["bending", "finite elements"],
-                safety.get(("bending", "ISO 6336-3"), np.nan),
-                *(safety.get(("pitting", "contact analysis"), np.nan), safety["pitting", "ISO 6336-2"]),
+                *(body, flank, min(verdicts, key=WORST_FIRST.index)),
+                *(safety.get(way, np.nan) for way in SAFETY_WAYS),
                 *(1e-3 * edge_load, 1e3 * edge_length),
                 min(rating.life for rating in ways) / 3600.0,
                 float(np.prod(reliabilities)) if reliabilities else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                "; ".join(
-                    f"{rating.failure}: {rating.reason}" for rating in _worst_ways(ways) if rating.reason
-                ),
+                "; ".join(reasons),
                 "; ".join(dict.fromkeys(caveat for rating in ways for caveat in rating.caveats)),
                 all(bool(_within(rating, pressure).all()) for rating in ways),
             )
@@ -220,10 +231,6 @@ def _subject(rating: FailureRating) -> tuple[str, ...]:
 def _within(rating: FailureRating, pressure: ContactPressure) -> np.ndarray:
     """Mark the loads (n,) within the torques of the contact analysis, and those without cycles."""
     return pressure.within(rating.duty.torque) | (rating.duty.cycles == 0.0)
-
-
-RED = "red"
-"""Verdict of a flank that is less safe than required."""
 
 
 def with_scuffing(safety: pd.DataFrame, spectrum: pd.DataFrame, losses: pd.DataFrame) -> pd.DataFrame:

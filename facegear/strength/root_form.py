@@ -1,7 +1,7 @@
-"""Spur gears as the cylindrical gear standard sees them: form and influence factors of ISO 6336."""
+"""Form and influence factors of the cylindrical gear standard ISO 6336, for real and virtual spur gears."""
 
 from dataclasses import dataclass
-from math import acos, cos, pi, sin, sqrt, tan
+from math import acos, cos, pi, radians, sin, sqrt, tan
 
 from facegear.errors import NotConverged
 from facegear.teeth.design import involute
@@ -9,14 +9,14 @@ from facegear.teeth.design import involute
 
 @dataclass(frozen=True)
 class SpurGear:
-    """One external spur gear cut by a rack.
+    """One external spur gear cut by a rack, real or virtual.
 
-    module (m), pressure_angle (rad) of the rack, profile_shift in modules, tip_radius and width in m;
-    rack_addendum (h_fP, from the rack's datum line to its tip) and rack_tip_radius (rho_fP) of the
-    cutting rack in modules.
+    teeth: their number, no whole one where the gear is virtual. module (m), pressure_angle (rad) of the rack,
+    profile_shift in modules, tip_radius and width in m; rack_addendum (h_fP, from the rack's datum line to
+    its tip) and rack_tip_radius (rho_fP) of the cutting rack in modules.
     """
 
-    teeth: int
+    teeth: float
     module: float
     pressure_angle: float
     profile_shift: float
@@ -56,21 +56,52 @@ def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -
     return sqrt(1.0 / (pi * soft))
 
 
-def contact_ratio_factor(contact_ratio: float) -> float:
-    """Return the contact ratio factor Z_epsilon = sqrt((4 - contact_ratio) / 3) of spur gears (ISO
-    6336-2).
+def contact_ratio_factor(contact_ratio: float, overlap_ratio: float = 0.0) -> float:
+    """Return the contact ratio factor Z_epsilon (ISO 6336-2).
+
+    sqrt((4 - contact_ratio) / 3) of spur gears; with a growing overlap ratio its square goes linearly to
+    1 / contact_ratio, where it stays from an overlap ratio of 1 on.
 
     Parameters
     ----------
     contact_ratio : float
         Transverse contact ratio, dimensionless.
+    overlap_ratio : float
+        Overlap ratio, dimensionless.
 
     Returns
     -------
     float
         Z_epsilon, dimensionless.
     """
-    return sqrt((4.0 - contact_ratio) / 3.0)
+    overlap = min(overlap_ratio, 1.0)
+    return sqrt((4.0 - contact_ratio) / 3.0 * (1.0 - overlap) + overlap / contact_ratio)
+
+
+STEEPEST, DEGREES = radians(30.0), radians(120.0)
+"""Helix angle (rad) from which on Y_beta falls no further, and the angle that it is counted in."""
+
+
+def helix_angle_factors(helix_angle: float, overlap_ratio: float) -> tuple[float, float]:
+    """Return the helix angle factors of bending and of pitting (ISO 6336-3:2006, ISO 6336-2:2006).
+
+    Y_beta = 1 - overlap ratio * helix angle / 120 degrees, with an overlap ratio of 1 and a helix angle of 30
+    degrees at most. Z_beta = 1 / sqrt(cos(helix angle)).
+
+    Parameters
+    ----------
+    helix_angle : float
+        On the reference cylinder, of either sign, rad.
+    overlap_ratio : float
+        Overlap ratio, dimensionless.
+
+    Returns
+    -------
+    tuple[float, float]
+        Y_beta and Z_beta, dimensionless.
+    """
+    bending = 1.0 - min(overlap_ratio, 1.0) * min(abs(helix_angle), STEEPEST) / DEGREES
+    return bending, 1.0 / sqrt(cos(helix_angle))
 
 
 def relative_notch_sensitivity(slip_layer: float, notch_parameter: float) -> float:
@@ -249,7 +280,7 @@ def stress_correction(slenderness: float, notch_parameter: float) -> float:
     return float((1.2 + 0.13 * slenderness) * notch_parameter**exponent)
 
 
-def _tangent_angle(g: float, h: float, teeth: int) -> float:
+def _tangent_angle(g: float, h: float, teeth: float) -> float:
     """Solve theta = 2 g tan(theta) / teeth - h of ISO 6336-3 for the angle theta (rad), by fixed-point
     iteration.
 
@@ -262,4 +293,4 @@ def _tangent_angle(g: float, h: float, teeth: int) -> float:
         if abs(next_angle - angle) < 1e-15:
             return next_angle
         angle = next_angle
-    raise NotConverged("strength", f"root form of {teeth} teeth", f"{ITERATIONS} iterations")
+    raise NotConverged("strength", f"root form of {teeth:g} teeth", f"{ITERATIONS} iterations")

@@ -1,25 +1,19 @@
-"""Safety of a flank and a root: bisection over the load, bending limits, Hertz stress."""
+"""Safety of a flank and a root: bisection over the load, and bending limits."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import pi, sqrt, tan
+from math import sqrt
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import FacegearError
-from facegear.quantities import BODIES
 from facegear.strength.materials import BendingLimits, FlankDuty, Life, MaterialCard, PittingLimits, damage
 from facegear.strength.root_form import (
     STRESS_CORRECTION_REFERENCE,
-    RootForm,
-    SpurGear,
-    contact_ratio_factor,
-    elasticity_factor,
     mean_stress_factor,
     relative_notch_sensitivity,
     relative_surface_factor,
-    root_form,
     size_factor,
 )
 from facegear.strength.root_stress import RootStress, down_the_fillet
@@ -108,7 +102,7 @@ def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> f
     return low
 
 
-def reversal(root: RootStress, duty: FlankDuty) -> float:
+def reversal(root: RootStress, duty: FlankDuty, opposite: Sequence[RootStress] = ()) -> float:
     """Return the stress ratio R of a turn at the place of the largest tension, in the bin of the largest
     load.
 
@@ -121,6 +115,10 @@ def reversal(root: RootStress, duty: FlankDuty) -> float:
         Root stress of the rated gear.
     duty : FlankDuty
         Loads of the rated flank.
+    opposite : Sequence[RootStress]
+        Root stress of the same gear by each contact of its other flank, whose gauges are those of `root` in
+        a mirror with the fillets exchanged; the worst counts. Empty where the other flank's contacts are
+        the mirror image of the rated ones.
 
     Returns
     -------
@@ -131,14 +129,14 @@ def reversal(root: RootStress, duty: FlankDuty) -> float:
     opposite_torque = duty.opposite[duty.bins[worst]]
     if opposite_torque == 0.0:
         return 0.0
-    tension, compression = (
-        down_the_fillet(root.at_torque(torque)) for torque in (duty.torque[worst], opposite_torque)
-    )
-    high = tension[:, 0].max(axis=0)
+    tension = down_the_fillet(root.at_torque(duty.torque[worst]))[:, 0]
+    high = tension.max(axis=0)
     down, along = np.unravel_index(np.argmax(high), high.shape)
-    return float(
-        min(tension[:, 0, down, along].min(), compression[:, 1, down, along].min()) / high[down, along]
-    )
+    low = [
+        down_the_fillet(contact.at_torque(opposite_torque))[:, 1, down, along].min()
+        for contact in opposite or (root,)
+    ]
+    return float(min(tension[:, down, along].min(), *low) / high[down, along])
 
 
 def permissible_bending(
@@ -184,108 +182,3 @@ def permissible_bending(
         mean = mean_stress_factor(ratio, constant - slope * STRESS_CORRECTION_REFERENCE)
     surface = relative_surface_factor(body.root_roughness)
     return limits.limit * STRESS_CORRECTION_REFERENCE * notch * surface * size_factor(design.module) * mean
-
-
-def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
-    """Return the root section of the pinion for a load at the outer point of single contact.
-
-    The gear is taken as a rack: the roll angle there is that of the tip less (contact_ratio - 1) pitches.
-
-    Parameters
-    ----------
-    design : PairDesign
-        The pair.
-    contact_ratio : float
-        Contact ratio, dimensionless.
-
-    Returns
-    -------
-    RootForm
-        Root section after ISO 6336-3.
-    """
-    part, m = design.pinion, design.module
-    spur = SpurGear(
-        teeth=part.teeth,
-        module=m,
-        pressure_angle=design.pressure_angle,
-        profile_shift=part.profile_shift / m,
-        tip_radius=design.pinion_tip_radius,
-        width=_width(design),
-        rack_addendum=part.dedendum / m,
-        rack_tip_radius=part.rack_tip_radius / m,
-    )
-    roll = design.pinion_tip_roll - (contact_ratio - 1.0) * 2.0 * pi / part.teeth
-    return root_form(spur, design.pinion_base_radius * sqrt(1.0 + roll**2))
-
-
-def standard_bending(design: PairDesign, form: RootForm) -> Stress:
-    """Return the root stress F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the
-    narrower face b.
-
-    F_t is the torque over the pinion's pitch radius, m the module.
-
-    Parameters
-    ----------
-    design : PairDesign
-        The pair.
-    form : RootForm
-        Root section of the pinion.
-
-    Returns
-    -------
-    Stress
-        Function from torque (N m) on the pinion to stress (Pa).
-    """
-    scale = form.form_factor * form.stress_correction / (_width(design) * design.module)
-    return lambda torque: torque / design.pinion_pitch_radius * scale
-
-
-def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingRequest) -> dict[str, Stress]:
-    """Return the contact stress of ISO 6336-2 on each body, the gear's flank taken as a rack's.
-
-    Z_E Z_epsilon sqrt(F / (b R)), F the force along the line of action, b the narrower face and R the
-    pinion's radius of curvature at the pitch point. The pinion is judged at its inner point of single
-    contact where that is worse.
-
-    Parameters
-    ----------
-    design : PairDesign
-        The pair.
-    contact_ratio : float
-        Contact ratio, dimensionless.
-    request : RatingRequest
-        Gives the materials of both bodies.
-
-    Returns
-    -------
-    dict[str, Stress]
-        Stress (Pa) at a torque (N m) on the pinion, by body (`pinion`, `face_gear`).
-
-    Raises
-    ------
-    FacegearError
-        If the inner point of single contact lies below the base circle.
-    """
-    cards = [request.bodies[name].card for name in BODIES]
-    first, second = ((card.young_modulus, card.poisson_ratio) for card in cards)
-    base, pitch = design.pinion_base_radius, tan(design.pressure_angle)
-    inner = design.pinion_tip_roll - 2.0 * pi / design.pinion.teeth
-    factor = elasticity_factor(first, second) * contact_ratio_factor(contact_ratio)
-
-    def at(roll: float) -> Stress:
-        """Return the function from torque (N m) to contact stress (Pa) at a roll angle (rad) of the
-        pinion.
-        """
-        return lambda torque: factor * sqrt(torque / (base * _width(design)) / (base * roll))
-
-    if inner <= 0.0:
-        raise FacegearError(
-            "strength: the pinion's inner point of single contact must lie above its base circle"
-        )
-    return {"pinion": at(min(inner, pitch)), "face_gear": at(pitch)}
-
-
-def _width(design: PairDesign) -> float:
-    """Return the common face width of both gears, m."""
-    gear = design.face_gear
-    return min(design.pinion.width, gear.outer_radius - gear.inner_radius)

@@ -22,7 +22,7 @@ from facegear.machine.mean_load import at_mean_load
 from facegear.machine.poses.fixed_point import posed_machine
 from facegear.machine.poses.surface import PoseSurface
 from facegear.machine.static_gears import at_rest
-from facegear.meshing.stiffness_source import series_of, unloaded_error
+from facegear.meshing.stiffness_source import flank_series, series_of, unloaded_error
 from facegear.motion.plan import JumpRange, Settings
 from facegear.motion.steady_state.guide import Guide
 from facegear.motion.steady_state.simulate import build_model
@@ -266,7 +266,12 @@ def tooth_meshes(
     series, error = series_of(harmonics), unloaded_error(harmonics)
     tables = None if law is None else tables_of(law)
     return lambda values: PairExcitation(
-        ToothNumbers.of_config(values), series, error, tables=tables, lubricated_teeth=lubricated_teeth
+        ToothNumbers.of_config(values),
+        series,
+        error,
+        tables=tables,
+        lubricated_teeth=lubricated_teeth,
+        harmonics=harmonics,
     )
 
 
@@ -346,11 +351,22 @@ def judge(
         """
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
+        section = section.at_speed(values["dynamics"]["speed_rpm"])
         parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
         require_buildable(section, mesh.numbers, parts)
         require_room(section, mesh.numbers, parts)
         tables = None if mesh.tables is None else mesh.tables(parts[0])
-        lumped_machine = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded_error, parts, tables)
+        gears = [gear.side.value for gear in parts[0].gears]
+        flanks = None if mesh.harmonics is None else flank_series(mesh.harmonics, gears)
+        lumped_machine = machine(
+            section,
+            mesh.numbers,
+            mesh.stiffness,
+            mesh.unloaded_error,
+            parts,
+            tables,
+            flank_stiffness=flanks,
+        )
         if bodies is not None:
             lumped_machine = bodies.add_bodies(lumped_machine, section, values["tooth_pair"])
         if surface is not None:

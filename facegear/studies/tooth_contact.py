@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from typing import Any, Self
 
+import pandas as pd
+
 from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
 from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
@@ -42,6 +44,7 @@ from facegear.strength.passage import PassingTension
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
 from facegear.teeth.design import PairDesign
 from facegear.teeth.flank_shapes import Flanks, GearModifications
+from facegear.teeth.placement import pair_at
 
 Values = Mapping[str, Any]
 GearFlanks = Mapping[str, "GearFlank"]
@@ -54,7 +57,8 @@ class PairExcitation:
 
     `backlash_added` (um) is the difference of the pair's backlash from that of the config. `answers` are
     those of the contact where the pair was put into contact. `tables` are those of the flanks where k depends
-    on the load. `lubricated_teeth` are given where the pair is lubricated.
+    on the load. `lubricated_teeth` are given where the pair is lubricated. `harmonics` is the table of stage
+    stiffness that may give single flanks a stiffness of their own.
     """
 
     numbers: ToothNumbers
@@ -64,6 +68,7 @@ class PairExcitation:
     answers: PairAnswers | None = None
     tables: TablesOf | None = None
     lubricated_teeth: "LubricatedTeeth | None" = None
+    harmonics: pd.DataFrame | None = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
         """Return section `transmission` with `backlash_added` on the backlash of all meshes.
@@ -322,7 +327,7 @@ class VariedBodies:
         """
         bodies = cls(ToothPair.of_config(pair))
         for side, section in elastic_gears(Transmission.of_config(transmission)).items():
-            bodies.cache[_body_key(section, bodies.pair)] = ReducedBody.of_arrays(arrays, side)
+            bodies.cache[_body_key(section, bodies.pair, side)] = ReducedBody.of_arrays(arrays, side)
         return bodies
 
     def add_bodies(self, machine: Machine, section: Transmission, values: Values) -> Machine:
@@ -354,31 +359,33 @@ class VariedBodies:
         check_bodies(pair, section)
         sections = elastic_gears(section)
         gears = {
-            number: self._body(sections[gear.side.value], pair)
+            number: self._body(sections[gear.side.value], pair, gear.side.value)
             for number, gear in enumerate(machine.layout.gears)
             if gear.side.value in sections
         }
         elastic = ElasticGears(machine.layout, gears)
         return replace(machine, bodies=elastic, softening=elastic.softening())
 
-    def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
+    def _body(self, section: BodySection, pair: ToothPair, side: str) -> ReducedBody:
         """Return a reduced face gear from the cache, or solve and keep it.
 
         With CACHED_BODIES in the cache the oldest one is dropped.
         """
-        key = _body_key(section, pair)
+        key = _body_key(section, pair, side)
         if key not in self.cache:
             if len(self.cache) >= CACHED_BODIES:
                 del self.cache[next(iter(self.cache))]
-            self.cache[key] = _solve_body(section, pair)
+            self.cache[key] = _solve_body(section, pair, side)
         return self.cache[key]
 
 
-def _body_key(section: BodySection, pair: ToothPair) -> Hashable:
+def _body_key(section: BodySection, pair: ToothPair, side: str) -> Hashable:
     """Return a key of everything on which a reduced face gear depends, for the cache of bodies."""
-    shape = body_shape(section, pair)
-    mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
-    fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
+    shape, patch = body_shape(section, pair, side), contact_patch(section, pair, side)
+    mounting = (shape.teeth, shape.material, shape.layer, patch, pair.face_gear_teeth)
+    fitted_teeth = None
+    if section.teeth == "fitted":
+        fitted_teeth = _nominal_teeth(pair_at(pair_design(pair), side, "drive"))
     return (section, shape.corners.tobytes(), mounting, fitted_teeth)
 
 
@@ -387,12 +394,13 @@ def _nominal_teeth(design: PairDesign) -> Hashable:
     deviations.
     """
     gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
-    pinion = design.pinion.teeth, design.pinion.profile_shift
-    return (design.module, design.pressure_angle, pinion, gear, design.shaper)
+    pinion = design.pinion.teeth, design.pinion.profile_shift, design.middle
+    axes = design.shaft_angle, design.offset, design.helix_angle, design.taper_angle
+    return (design.module, design.pressure_angles, axes, pinion, gear, design.shaper)
 
 
-def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
+def _solve_body(section: BodySection, pair: ToothPair, side: str) -> ReducedBody:
     """Solve the elasticity of a face gear's body and return its reduced model: modes and mesh compliance."""
-    shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
+    shape, teeth = fitted_shape(section, pair, side), pair.face_gear_teeth
     solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
-    return reduced_body(solution, contact_patch(section, pair), *section.damping)
+    return reduced_body(solution, contact_patch(section, pair, side), *section.damping)

@@ -148,8 +148,23 @@ def section_contact_ratio(design: PairDesign) -> float:
     NotConverged
         Where the flanks have no line of contact.
     """
-    if not design.is_spur:
-        return nominal_path(design).contact_ratio
+    return transverse_contact_ratio(design) if design.is_spur else nominal_path(design).contact_ratio
+
+
+def transverse_contact_ratio(design: PairDesign) -> float:
+    """Compute the contact ratio in the pinion's transverse section at the radius m_t N2 / 2, where the gear
+    rolls on the pinion as a rack does: by that section's pressure angle, whatever the face.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of spur or helical gears whose axes cross at a right angle.
+
+    Returns
+    -------
+    float
+        Transverse contact ratio of the drive flanks, dimensionless.
+    """
     start, end = _section_ends(design)
     return (start + end) / (2 * pi * design.pinion_base_radius / design.pinion.teeth)
 
@@ -179,19 +194,19 @@ def nominal_path(design: PairDesign) -> ContactPath:
 
 
 def _section_ends(design: PairDesign) -> tuple[float, float]:
-    """Return lengths of contact (m) of a spur pair before and after the pitch point, in its section there."""
-    angle, base = design.pressure_angle, design.pinion_base_radius
-    tip = min(
-        base * design.pinion_tip_roll,
-        design.shaper_base_radius * design.shaper_tip_roll - design.shaper_lift * sin(angle),
-    )
+    """Return lengths of contact (m) of a spur or helical pair before and after the pitch point, in its
+    transverse section there.
+    """
+    angle, base = design.transverse_pressure_angle, design.pinion_base_radius
+    shaper_tip = design.shaper_base_radius * design.shaper_tip_roll * design.family.shaper_flanks[0].cosine
+    tip = min(base * design.pinion_tip_roll, shaper_tip - design.shaper_lift * sin(angle))
     end = tip - base * tan(angle)
     junction = float(pinion.junction_roll(design, design.middle))
     return min(_rolling_depth(design) / sin(angle), base * (tan(angle) - junction)), end
 
 
 def _rolling_depth(design: PairDesign) -> float:
-    """Return by how much a spur gear's tip lies above the pinion's rolling line, m."""
+    """Return by how much the gear's tip lies above the pinion's rolling line, m."""
     return float(face_gear.tip_height(design, design.gear_pitch_radius)) + design.pinion_pitch_radius
 
 
@@ -298,9 +313,10 @@ def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
         else:
             reach = np.where(np.isfinite(distance), distance, 0.0)
             displacement = signed_distance(design, outline, after, 0.5 * design.module)[0] - reach
-        lever = displacement / (TURN * design.gear_normal_arm)
-        turn = np.where(lever > FREES, -distance / np.maximum(lever, FREES), np.inf)
-        turn = np.where(distance < -TOUCH, turn, 0.0)
+        is_deep = distance < -TOUCH  # elsewhere distances may be infinite
+        lever = displacement[is_deep] / (TURN * design.gear_normal_arm)
+        turn = np.zeros(distance.shape)
+        turn[is_deep] = np.where(lever > FREES, -distance[is_deep] / np.maximum(lever, FREES), np.inf)
         largest_turn = np.maximum(largest_turn, turn.max(axis=(1, 2)))
     return largest_turn
 

@@ -35,7 +35,8 @@ class PairNumbers:
 
     pressure_angle: in the transverse section. mean_radius: place y of the middle of the pinion's face, at
     which half base and half space angle count. first_end, last_end: ends of the common face, places y along
-    the pinion's axis. base_helix_sine: signed sine of the base helix angle.
+    the pinion's axis, counted on a pinion that stands outwards by its assembly. base_helix_sine: signed sine
+    of the base helix angle.
     """
 
     pressure_angle: float
@@ -67,8 +68,10 @@ class PairNumbers:
         PairNumbers
             Numbers in m and rad.
         """
-        half, face = design.pinion.width / 2, design.face_gear
-        inner, outer = pitch_line_y(design.family, [face.inner_radius, face.outer_radius]).tolist()
+        half, face, outwards = design.pinion.width / 2, design.face_gear, design.assembly.pinion_axial
+        inner, outer = (
+            pitch_line_y(design.family, [face.inner_radius, face.outer_radius]) - outwards
+        ).tolist()
         return cls(
             pressure_angle=design.transverse_pressure_angle,
             pinion_teeth=float(design.pinion.teeth),
@@ -107,6 +110,11 @@ class PairNumbers:
         """All numbers as one array (14,) in the order of the fields, m and rad; `of_array` reads it."""
         return np.array(astuple(self))
 
+    @property
+    def normal_arm(self) -> float:
+        """Torque on the pinion over the force along the drive flank's normal, m."""
+        return self._pinion.base_radius * self._pinion.cosine
+
     @cached_property
     def _pinion(self) -> Helicoid:
         """Drive flank of the pinion as an involute helicoid."""
@@ -114,8 +122,8 @@ class PairNumbers:
         return self._helicoid(self.pinion_base_radius, phase, self.pinion_teeth)
 
     @cached_property
-    def _motion(self) -> RelativeMotion:
-        """Nominal motion of the pinion against the gear."""
+    def axes(self) -> RelativeMotion:
+        """Nominal motion of the pinion against the gear, in the mesh frame."""
         return self._against_gear(self.pinion_base_radius)
 
     @cached_property
@@ -157,7 +165,7 @@ class PairNumbers:
         """
         if self.shaper_lift <= 0.0:
             return None
-        line = find_line(self._gear, self._pinion, self._motion, errors)
+        line = find_line(self._gear, self._pinion, self.axes, errors)
         return line if line is not None and line.psi > 0.0 else None
 
     def place_line(self, errors: AssemblyErrors, psi: float, turn: float) -> ContactLine:
@@ -177,7 +185,24 @@ class PairNumbers:
         ContactLine
             The line.
         """
-        return place_line(self._gear, self._pinion, self._motion, errors, psi, turn)
+        return place_line(self._gear, self._pinion, self.axes, errors, psi, turn)
+
+    def path_at(self, psi: float, errors: AssemblyErrors) -> float:
+        """Return `ConjugateContact.path` of the gear's normal with a slope, where no error turns it.
+
+        Parameters
+        ----------
+        psi : float
+            Slope of the normal, rad.
+        errors : AssemblyErrors
+            Errors of the assembly.
+
+        Returns
+        -------
+        float
+            Place along the pinion's axis, m.
+        """
+        return _contact_of(self.place_line(errors, psi, 0.0)).path
 
 
 @dataclass(frozen=True)
@@ -199,6 +224,9 @@ class ConjugateContact:
     normal_roll
         Turn (rad) of the normal of pair 0 about the pinion's axis at phi1 = 0 since the involute began at y =
         middle; without a helix the roll angle of its contact.
+    path
+        Place along the pinion's axis, counted on the pinion, where the normal passes the pitch point of its
+        involute (m), about the middle of the path; without a helix `y`.
     """
 
     def pinion_place(self, helicoid: Helicoid, turn: ArrayLike) -> tuple[Array, Array]:
@@ -225,6 +253,7 @@ class ConjugateContact:
     transmission_error: float
     y: float
     normal_roll: float
+    path: float
 
 
 def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
@@ -263,12 +292,30 @@ def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | 
     return None if line is None else _contact_of(line)
 
 
+def pitch_roll(helicoid: Helicoid) -> float:
+    """Return the transverse length of roll of an involute at its pitch radius.
+
+    Parameters
+    ----------
+    helicoid : Helicoid
+        Flank of a pinion.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    return helicoid.pitch_radius * sin(helicoid.pressure_angle)
+
+
 def _contact_of(line: ContactLine) -> ConjugateContact:
     """Return the numbers of a contact line in the signs of `ConjugateContact` (its turn is the line's
     reversed).
     """
-    roll = line.pinion_slope + line.helicoid.phase
-    return ConjugateContact(line.psi, -line.turn, line.transmission_error, line.pinion_place, roll)
+    helicoid, y = line.helicoid, line.pinion_place
+    path = y + helicoid.lead * pitch_roll(helicoid)
+    roll = line.pinion_slope + helicoid.phase
+    return ConjugateContact(line.psi, -line.turn, line.transmission_error, y, roll, path)
 
 
 @lru_cache(maxsize=256)
@@ -299,7 +346,7 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
 
 
 def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float | None:
-    """Compute the offset with which the contact's normal is at a position y along the pinion, by Newton's
+    """Compute the offset with which `ConjugateContact.path` is at a position along the pinion, by Newton's
     method.
 
     Parameters
@@ -325,10 +372,10 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
         near = [contact_at(pair, replace(errors, offset=at)) for at in (offset, offset + step)]
         if near[0] is None or near[1] is None:
             return None
-        path_error = near[0].y - path
+        path_error = near[0].path - path
         if abs(path_error) < 1e-12:
             return offset
-        offset -= path_error * step / (near[1].y - near[0].y)
+        offset -= path_error * step / (near[1].path - near[0].path)
     return None
 
 
@@ -355,7 +402,7 @@ def without_modifications(design: PairDesign) -> bool:
 class ConjugateSlopes:
     """Derivatives by offset, axial shift (m/m) and the error of the shaft angle (m/rad), (3,) each.
 
-    transmission_error, path: of `ConjugateContact.transmission_error` and `ConjugateContact.y`.
+    transmission_error, path: of `ConjugateContact.transmission_error` and `ConjugateContact.path`.
     """
 
     transmission_error: Array

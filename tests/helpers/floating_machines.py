@@ -1,4 +1,4 @@
-"""Machines whose pinions float along their axes and tilt, and their equations of motion written by hand."""
+"""Two pinions that float and tilt between tilting gears, and their equations of motion by hand."""
 
 from dataclasses import replace
 from math import cos, pi, radians
@@ -26,7 +26,7 @@ KINDS = {
 }
 
 
-def machine_of(teeth: Teeth) -> Machine:
+def make_floating_machine(teeth: Teeth, moving: bool) -> Machine:
     """Two pinions between two gears: one on a shaft that bends, which tilts and turns; the gears tilt."""
     shaft = random_shaft(np.random.default_rng(54))
     across = np.linalg.inv(shaft.compliance[:2, :2])
@@ -52,6 +52,7 @@ def machine_of(teeth: Teeth) -> Machine:
         damping=Damping(MESH_DAMPING, MASS_DAMPING, BEARING_DAMPING, OpenFlanks.CONTACT_ONLY),
         imperfections=flaws,
         drive_line=DriveLine(layout, {0: Seat(shaft, SEAT)}, {}),
+        has_phase_shifts=moving,
     )
 
 
@@ -78,24 +79,48 @@ class ByHand:
                 axial = self.rows[4 * flank + mesh, 4 * pinion + 2]
                 place = axial * machine.imperfections.outwards[pinion] / (pitch * cos(angle))
                 self.ahead[4 * flank + mesh] = sign * place
+        self.rotation = np.zeros(len(self.mass))
+        self.rotation[[3, 7]], self.rotation[[11, 15]] = 1.0, teeth.pinion / teeth.gear
+        self.phase_shifts = np.zeros((8, len(self.mass)))
+        if machine.has_phase_shifts:
+            self.phase_shifts = self.phase_rows(teeth, pitch)
 
-    def law(self, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Stiffness, error and its rate of all flanks: back flanks go through the cycle backwards."""
+    def phase_rows(self, teeth: Teeth, pitch: float) -> np.ndarray:
+        """Places in the mesh cycle by turn and float of each pinion, without the rotation of all bodies."""
+        rows = np.zeros((8, len(self.mass)))
+        for flank, (angle, sign) in enumerate(zip(teeth.angles, (1, -1), strict=True)):
+            for mesh, pinion in enumerate((0, 1, 0, 1)):
+                number = 4 * flank + mesh
+                rows[number, 4 * pinion + 2] = (
+                    sign * TAU * self.rows[number, 4 * pinion + 2] / (pitch * cos(angle))
+                )
+                rows[number, 4 * pinion + 3] = teeth.pinion
+        carried = self.mass * self.rotation
+        return rows - np.outer(rows @ self.rotation, carried) / (self.rotation @ carried)
+
+    def law(self, t: float, moved=None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Stiffness, error and their rates of all flanks: back flanks go through the cycle backwards."""
         place = TAU * (self.omega * t / TAU - np.tile(self.phases, 2) + self.ahead)
+        at = place if moved is None else place + self.phase_shifts @ moved
         back = np.repeat([1.0, -1.0], 4)
-        stiffness = K + SWING * back * np.sin(place)
-        return stiffness, ERROR * np.cos(place), -ERROR * self.omega * np.sin(place)
+        stiffness, by_place = K + SWING * back * np.sin(at), SWING * back * np.cos(at)
+        return stiffness, ERROR * np.cos(place), -ERROR * self.omega * np.sin(place), by_place
 
     def flanks(self, t, moved, speed):
-        stiffness, error, rate = self.law(t)
+        stiffness, error, rate, by_place = self.law(t, moved)
         over, closing = self.rows @ moved - error - self.gap, self.rows @ speed - rate
         touching = over > 0.0
-        return stiffness, np.where(touching, over, 0.0), np.where(touching, closing, 0.0)
+        return stiffness, np.where(touching, over, 0.0), np.where(touching, closing, 0.0), by_place
 
     def slope(self, t, state):
         moved, speed = np.split(state, 2)
-        stiffness, over, closing = self.flanks(t, moved, speed)
+        stiffness, over, closing, by_place = self.flanks(t, moved, speed)
         force = stiffness * over + MESH_DAMPING * closing
-        pull = self.load - self.rows.T @ force - self.spring @ moved
+        pull = (
+            self.load
+            - self.rows.T @ force
+            - self.spring @ moved
+            - self.phase_shifts.T @ (0.5 * by_place * over**2)
+        )
         pull -= (self.damping + self.gyroscopic) @ speed
         return np.concatenate([speed, pull / self.mass])

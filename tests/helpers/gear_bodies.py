@@ -12,11 +12,11 @@ from lumped_machines import make_layout, make_machine
 from facegear.harmonics import Harmonics
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.kinematics import GEOMETRIC
-from facegear.machine.loaded_contacts import forces_by_active_sets
+from facegear.machine.statics import mean_equilibrium
 from facegear.parts.body_mesh import body_mesh
 from facegear.parts.gear_body import SolvedBody, reduced_body, solve_body
 from facegear.parts.matrices import BodyMatrices, body_matrices
-from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.reduced_body import ReducedBody, RimForces
 from facegear.parts.section import Section, rectangle
 from facegear.parts.wheel import Hub, Patch, Rim, Web, wheel
 from facegear.teeth.design import Material
@@ -85,16 +85,34 @@ def small_body(seed=0) -> ReducedBody:
         frequency=random.uniform(20, 60, 8),
         coriolis=coriolis,
         stiffening=stiffening,
-        mesh=random.uniform(0.1, 0.3, (2, 8)),
+        mesh=np.concatenate([random.uniform(0.1, 0.3, (2, 8)), np.zeros((1, 8))]),
         hub=np.where(order < 2, random.uniform(0.1, 1.0, (2, 8)), 0.0),
         hub_spin=np.where(order == 0, 0.3, 0.0),
         round=turning,
-        static=np.zeros((5, 2, 2)),
+        static=np.zeros((5, 3, 3)),
         damping_ratio=np.array(0.02),
     )
-    residual = np.zeros((5, 2, 2))
-    residual[4] = np.diag([2e-10, 3e-10])
+    mesh = body.mesh.copy()
+    mesh[2] = random.uniform(-0.2, 0.2, 8) * (1.0 - turning)
+    body = replace(body, mesh=mesh)
+    residual = np.zeros((5, 3, 3))
+    residual[4] = np.diag([2e-10, 3e-10, 1e-10])
     return replace(body, static=body.modal + residual)
+
+
+def flank_direction(angle: float, back: bool = False) -> np.ndarray:
+    """Axial, tangential and radial part of a unit force of spur teeth on the upper gear."""
+    return np.array([-np.sin(angle), -np.cos(angle) if back else np.cos(angle), 0.0])
+
+
+def spur_forces(sign: float = 1.0) -> RimForces:
+    """Unit forces of both flanks of spur teeth on the rim of the upper or the lower gear."""
+    mirror = np.array([1.0, sign, 1.0])
+    return RimForces(
+        np.stack([flank_direction(ANGLE, back) * mirror for back in (False, True)]),
+        np.zeros(2),
+        np.full(2, 0.268),
+    )
 
 
 def gearbox(body=None, **changes):
@@ -112,5 +130,4 @@ def gearbox(body=None, **changes):
 
 def mesh_forces(machine):
     """Force of each mesh under the mean torques, N."""
-    drive, back = np.split(forces_by_active_sets(machine), 2)
-    return drive - back
+    return mean_equilibrium(machine).forces[0]

@@ -72,6 +72,30 @@ class FlankCompliance:
         reach = len(self.neighbour_blocks) // 2
         return self.neighbour_blocks[tooth_offset + reach] if abs(tooth_offset) <= reach else None
 
+    def reverse_along_face(self, gauges: tuple[int, ...]) -> "FlankCompliance":
+        """Return the compliance of the body in a mirror across its face: nodes along it change their order.
+
+        Parameters
+        ----------
+        gauges : tuple of int
+            Shape of the gauges, the last along the face.
+
+        Returns
+        -------
+        FlankCompliance
+            Compliance of the image, m/N.
+        """
+        lattice, coarse, blocks = self.shape, self.coarse_shape, len(self.neighbour_blocks)
+        loaded = self.loaded_tooth.reshape(*lattice, *lattice)[:, ::-1, :, ::-1]
+        neighbours = self.neighbour_blocks.reshape(blocks, *coarse, *coarse)[:, :, ::-1, :, ::-1]
+        readings = self.readings.reshape(len(self.readings), *gauges, *coarse)[:, :, :, ::-1, :, ::-1]
+        return replace(
+            self,
+            loaded_tooth=loaded.reshape(self.loaded_tooth.shape),
+            neighbour_blocks=neighbours.reshape(self.neighbour_blocks.shape),
+            readings=readings.reshape(self.readings.shape),
+        )
+
 
 def flank_compliance(
     body: ElasticBody,

@@ -13,10 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.teeth.conjugate import PairNumbers, exact_contact
+from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame
+from facegear.teeth.conjugate import PairNumbers, exact_contact, pitch_roll
 from facegear.teeth.design import AssemblyErrors, PairDesign
-from facegear.teeth.placement import FLANKS, RigidMotion, errors_at, mirror_design, pinion_angle, rotation
+from facegear.teeth.family_contact import contact_line
+from facegear.teeth.placement import FLANKS, RigidMotion, mirror_design, pair_at, pinion_angle, rotation
+from facegear.teeth.tooth_family import SIDES, RelativeMotion
 from facegear.teeth.unloaded_contact import unloaded_contact
+
+SQUARE_AXES = RelativeMotion(1.0)
+"""Axes that cross at a right angle; the ratio of the motion does not matter."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +49,9 @@ class Pose:
     behind: float
 
 
-def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
+def pose_of(
+    pinion: RigidMotion, gear: RigidMotion, middle: float, axes: RelativeMotion = SQUARE_AXES
+) -> Pose:
     """Return the pose of a pinion and a gear that have moved in the mesh frame from their nominal places.
 
     It is exact: the motion of the pinion relative to the gear is split into a turn of the gear, an
@@ -55,55 +63,43 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
         Rigid motion of any size, m; the error of the shaft angle stays within a quarter turn.
     gear : RigidMotion
         Rigid motion of any size, m.
-    mean_radius : float
+    middle : float
         Position of the middle of the pinion's face on its axis, m.
+    axes : RelativeMotion
+        Shaft angle and offset of the nominal axes; at a right angle and crossing by default.
 
     Returns
     -------
     Pose
         m and rad.
     """
-    back = gear.inverse()
+    back, (across, along, up) = gear.inverse(), axes.basis
     turn = back.matrix @ pinion.matrix
-    middle = back.points(pinion.points(np.array([[0.0, mean_radius, 0.0]])))[0]
-    axis = turn @ np.array([0.0, 1.0, 0.0])
+    middle_point = back.points(pinion.points(middle_place(middle, axes)[None]))[0]
+    axis = turn @ along
     around = float(np.arctan2(-axis[0], axis[1]))
-    tilt = float(np.arcsin(axis[2]))
-    unturned = _about_z(-around)
-    middle, turn = unturned @ middle, unturned @ turn
-    outward = (middle[1] - mean_radius) / np.cos(tilt)
-    errors = AssemblyErrors(
-        offset=float(middle[0]),
-        shaft_angle_error=tilt,
-        gear_axial=float(middle[2] - outward * np.sin(tilt)),
+    # Turned back into the plane of y and z, the pinion's axis is (level, axis[2]) = (sine, -cosine).
+    level = float(np.hypot(axis[0], axis[1]))
+    tilt = float(
+        np.arctan2(level * axes.cosine + axis[2] * axes.sine, level * axes.sine - axis[2] * axes.cosine)
     )
-    # What is left of the turn is about the pinion's own axis, -y, before the tilt about x.
-    return Pose(errors, float(outward), float(np.arctan2(-turn[0, 2], turn[0, 0])), -around)
+    unturned = _about_z(-around)
+    middle_point, turn = unturned @ middle_point, unturned @ turn
+    outward = float((middle_point[1] - middle * axes.sine) / level)
+    errors = AssemblyErrors(
+        offset=float(middle_point[0] - axes.offset),
+        shaft_angle_error=tilt,
+        gear_axial=float(middle_point[2] + middle * axes.cosine - outward * axis[2]),
+    )
+    # What is left of the turn is about the pinion's own axis, before the tilt about x.
+    ahead = float(np.arctan2(-turn[0] @ up, turn[0] @ across))
+    return Pose(errors, outward, ahead, -around)
 
 
 def _about_z(angle: float) -> Array:
     """Return the matrix (3, 3) of a rotation about z by an angle, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-
-
-def to_mesh_frame(sign: float) -> Array:
-    """Return the matrix from the machine's frame at a pinion to that of its mesh.
-
-    With s = `sign`, the mesh's x, y, z are s x, z and -s y of the machine: along the tangent, outwards
-    along the pinion, and along the gears' axis.
-
-    Parameters
-    ----------
-    sign : float
-        1 for a mesh with the upper gear, -1 with the lower, dimensionless.
-
-    Returns
-    -------
-    (3, 3) array
-        Dimensionless, a rotation in units of 1.
-    """
-    return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
 
 
 def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMotion:
@@ -129,42 +125,28 @@ def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMot
     return RigidMotion(matrix, np.asarray(shift, float) + point - matrix @ point)
 
 
-def assembled_motion(errors: AssemblyErrors, mean_radius: float) -> RigidMotion:
+def assembled_motion(errors: AssemblyErrors, middle: float, axes: RelativeMotion) -> RigidMotion:
     """Return the motion of a pinion in the mesh frame, from its nominal place, that assembly errors are.
 
     Parameters
     ----------
     errors : AssemblyErrors
         The assembly errors.
-    mean_radius : float
+    middle : float
         Position of the middle of the pinion's face on its axis, m.
+    axes : RelativeMotion
+        Shaft angle and offset of the nominal axes.
 
     Returns
     -------
     RigidMotion
         m.
     """
-    motion = body_motion((0.0, 0.0, 0.0), (errors.shaft_angle_error, 0.0, 0.0), (0.0, mean_radius, 0.0))
-    return RigidMotion(motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.gear_axial]))
-
-
-def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
-    """Return a motion given in the machine's frame at a pinion, in the frame of its mesh.
-
-    Parameters
-    ----------
-    motion : RigidMotion
-        The motion, m.
-    sign : float
-        1 for a mesh with the upper gear, -1 with the lower, dimensionless.
-
-    Returns
-    -------
-    RigidMotion
-        m.
-    """
-    frame = to_mesh_frame(sign)
-    return RigidMotion(frame @ motion.matrix @ frame.T, frame @ motion.shift)
+    motion = body_motion((0.0, 0.0, 0.0), (errors.shaft_angle_error, 0.0, 0.0), middle_place(middle, axes))
+    along = errors.pinion_axial * (motion.matrix @ axes.basis[1])
+    return RigidMotion(
+        motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.gear_axial]) + along
+    )
 
 
 @dataclass(frozen=True)
@@ -194,7 +176,8 @@ class MeshPlace:
     azimuth
         Angle of the pinion about the gears' axis, rad.
     tilt_height
-        Height over the pinion's axis, towards the gear, of the point about which the gear tilts, m.
+        Height over where the pinion's axis passes the gear's, towards the gear, of the point about which the
+        gear tilts, m.
     """
 
     gear: str
@@ -218,7 +201,8 @@ class DisplacedFlank:
     outward
         Shift of the pinion along its axis, away from the gears' axis.
     path
-        Place of the contact along the pinion's axis, as `ConjugateContact.y`.
+        Place of the contact along the pinion's axis, as `ConjugateContact.path`, counted where the pinion
+        was assembled.
     slope
         Slope of the common normal (the pressure angle there); NaN where the contact was searched.
     approach
@@ -226,7 +210,7 @@ class DisplacedFlank:
     deflection
         The part of `approach` that is of first order: what a lumped mesh counts as its deflection.
     backlash
-        Normal backlash of the displaced pair at this place of the mesh cycle.
+        Backlash of the displaced pair at this place of the mesh cycle, along the drive flank's normal.
     to_inner_end, to_outer_end
         From the path to the ends of the common face.
     """
@@ -276,33 +260,45 @@ def displaced_flanks(
     NotConverged
         If the flanks do not face each other.
     """
-    motions = _motions(design, mesh, pinion, gear)
-    nominal = errors_at(design.assembly, mesh.gear, FLANKS[0])
-    assembled_pinion = assembled_motion(nominal, design.mean_radius)
+    assembled_design = pair_at(design, mesh.gear, FLANKS[0])
+    nominal, middle = assembled_design.assembly, assembled_design.middle
+    axes = assembled_design.family.motion
+    turns = _turns(assembled_design, mesh, pinion, gear)
+    motions = [body_motion(*turn) for turn in turns]
+    assembled_pinion = assembled_motion(nominal, middle, axes)
     whole = RigidMotion(
         motions[0].matrix @ assembled_pinion.matrix, motions[0].points(assembled_pinion.shift[None])[0]
     )
-    pose = pose_of(whole, motions[1], design.mean_radius)
+    pose = pose_of(whole, motions[1], middle, axes)
+    # The face of a spur pinion keeps its ends when it moves along its axis, which nothing else would feel.
+    outward = nominal.pinion_axial if design.is_spur else pose.outward
+    errors = replace(pose.errors, pinion_axial=outward)
+    posed_pairs = [_pair_of_flank(assembled_design, errors, flank) for flank in FLANKS]
     contacts = [
-        _contact(_pair_of_flank(design, pose.errors, flank), pose, flank, position) for flank in FLANKS
+        _contact(pair, pose, flank, position) for pair, flank in zip(posed_pairs, FLANKS, strict=True)
     ]
-    still = Pose(nominal, 0.0, 0.0, 0.0)
-    rest = [_contact(_pair_of_flank(design, nominal, flank), still, flank, position)[0] for flank in FLANKS]
-    ends = PairNumbers.of_design(design)
-    return {
-        flank: DisplacedFlank(
-            design=_pair_of_flank(design, pose.errors, flank),
+    still = Pose(nominal, nominal.pinion_axial, 0.0, 0.0)
+    rest = [
+        _contact(_pair_of_flank(assembled_design, nominal, flank), still, flank, position)[0]
+        for flank in FLANKS
+    ]
+    arms = [pair.gear_normal_arm for pair in posed_pairs]
+    flanks = {}
+    for number, (flank, pair) in enumerate(zip(FLANKS, posed_pairs, strict=True)):
+        (error, path, slope), ends = contacts[number], PairNumbers.of_design(pair)
+        along = pair.assembly.pinion_axial - nominal.pinion_axial
+        flanks[flank] = DisplacedFlank(
+            design=pair,
             outward=pose.outward,
-            path=path,
+            path=path + along,
             slope=slope,
-            approach=error - at_rest,
-            deflection=_first_order(design, mesh, pinion, gear, flank),
-            backlash=-contacts[0][0] - contacts[1][0],
+            approach=error - rest[number],
+            deflection=_first_order(assembled_design, turns, SIDES[number]),
+            backlash=-contacts[0][0] - contacts[1][0] * (arms[0] / arms[1]),
             to_inner_end=path - ends.first_end,
             to_outer_end=ends.last_end - path,
         )
-        for flank, (error, path, slope), at_rest in zip(FLANKS, contacts, rest, strict=True)
-    }
+    return flanks
 
 
 def _pair_of_flank(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
@@ -322,52 +318,49 @@ def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tup
     was searched.
     """
     sign = 1.0 if flank == FLANKS[0] else -1.0
-    rotation_error = sign * (design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind)
+    rotation_error = sign * (design.normal_arm * pose.ahead + design.gear_normal_arm * pose.behind)
     exact = exact_contact(design)
     if exact is not None:
-        return exact.transmission_error + rotation_error, exact.y, exact.psi
+        return exact.transmission_error + rotation_error, exact.path, exact.psi
     phi1 = sign * (float(pinion_angle(design, position)) + pose.ahead)
     contact = unloaded_contact(design, phi1)
-    return float(contact.transmission_error[0]) + rotation_error, float(contact.path[1][0]), float("nan")
+    helicoid, (roll, y) = design.family.pinion_flanks[0], (float(part[0]) for part in contact.path)
+    path = y + helicoid.lead * (pitch_roll(helicoid) - helicoid.base_radius * roll)
+    return float(contact.transmission_error[0]) + rotation_error, path, float("nan")
 
 
-def _motions(
-    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
-) -> tuple[RigidMotion, RigidMotion]:
-    """Return the motions of pinion and gear in the mesh frame, from where they were assembled, m."""
-    pinion_turn, gear_turn = _turns(design, mesh, pinion, gear)
-    return in_mesh_frame(body_motion(*pinion_turn), mesh.sign), in_mesh_frame(
-        body_motion(*gear_turn), mesh.sign
-    )
+Turn = tuple[Array, Array, Array]
+"""Shift (m), rotation vector (rad) and pivot (m) of a body, (3,) each, in the mesh frame."""
 
 
 def _turns(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
-) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
-    """Return shift (m), rotation vector (rad) and pivot (m), (3,) each, of pinion and gear.
+) -> tuple[Turn, Turn]:
+    """Return the displacements of pinion and gear from where they were assembled, in the mesh frame.
 
-    All are in the machine's frame at the pinion; the gear's displacement is turned into it by the
-    azimuth. A pinion that drives turns against z there, and the lower gear against the gears' z.
+    design: of the mesh's gear. A pinion that drives turns against its z, and the lower gear against the
+    gears' z.
     """
+    axes, to_mesh = design.family.motion, to_mesh_frame(mesh.sign)
     cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
-    to_pinion = np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
-    pinion_parts = np.array(pinion.shift), np.array(pinion.turn) * [1.0, 1.0, -1.0]
-    gear_parts = np.array(gear.shift), np.array(gear.turn) * [1.0, 1.0, mesh.sign]
-    middle = np.array([0.0, 0.0, design.mean_radius])
-    height = np.array([0.0, mesh.sign * mesh.tilt_height, 0.0])
-    return (*pinion_parts, middle), (to_pinion @ gear_parts[0], to_pinion @ gear_parts[1], height)
+    of_pinion = axes.basis.T @ to_mesh
+    of_gear = to_mesh @ np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
+    pinion_turn = np.array(pinion.turn) * [1.0, 1.0, -1.0]
+    gear_turn = np.array(gear.turn) * [1.0, 1.0, mesh.sign]
+    middle, centre = middle_place(design.middle, axes), np.array([0.0, 0.0, -mesh.tilt_height])
+    return (
+        (of_pinion @ np.array(pinion.shift), of_pinion @ pinion_turn, middle),
+        (of_gear @ np.array(gear.shift), of_gear @ gear_turn, centre),
+    )
 
 
-def _first_order(
-    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement, flank: str
-) -> float:
+def _first_order(design: PairDesign, turns: tuple[Turn, Turn], side: int) -> float:
     """Return the approach of a flank (m) to first order, positive where it closes: the motion of the
-    pinion less that of the gear at the pitch point, along the ideal normal.
+    pinion less that of the gear on the line of contact of the ideal assembly, along its normal.
+
+    design: of the mesh's gear; turns: of `_turns`; side: of the flank, 1 drive and -1 back.
     """
-    point = np.array([0.0, mesh.sign * design.pinion_pitch_radius, design.gear_pitch_radius])
-    displacements = [
-        shift + np.cross(turn, point - pivot) for shift, turn, pivot in _turns(design, mesh, pinion, gear)
-    ]
-    angle, sign = design.pressure_angle, 1.0 if flank == FLANKS[0] else -1.0
-    normal = mesh.sign * np.array([sign * np.cos(angle), np.sin(angle), 0.0])
-    return float(normal @ (displacements[0] - displacements[1]))
+    line = contact_line(design.family, side)
+    assert line is not None  # without errors of assembly there always is one
+    displacements = [shift + np.cross(turn, line.foot - pivot) for shift, turn, pivot in turns]
+    return float(line.normal @ (displacements[0] - displacements[1]))

@@ -18,12 +18,12 @@ from facegear.errors import NotConverged
 from facegear.machine.flanks import significant_forces
 from facegear.machine.linear_model import LinearModel
 from facegear.machine.machine import Machine
-from facegear.machine.poses.mesh_poses import PARTS, ForceDirections, MeshPoses, mesh_poses
+from facegear.machine.poses.mesh_poses import PARTS, ForceDirections, MeshPoses, mesh_poses, rim_levers
 from facegear.machine.poses.posed_flanks import (
     closing_beyond,
     flank_reactions,
+    flank_surfaces,
     force_slopes,
-    ideal_slopes,
     linear_energy,
     mesh_energy,
     nominal_contact,
@@ -229,24 +229,28 @@ def pose_at(
     linear, displacements = _whole(machine, at_rest)
     poses = _poses(machine, surface, linear, displacements)
     loaded_flanks = np.arange(meshes) + meshes * (forces < 0.0)
-    contacts = unloaded_contacts(surface, poses, names)
-    path = np.array([contacts[flank].y for flank in loaded_flanks])
-    torque, angle = np.abs(forces) * layout.pinion_arm, poses.shaft_angle_error
+    surfaces = flank_surfaces(machine, surface)
+    contacts = unloaded_contacts(surfaces, poses, names)
+    path = np.array([contacts[flank].path for flank in loaded_flanks])
+    torque, angle = np.abs(layout.mesh_torques(forces)), poses.shaft_angle_error
     factor, energies = np.ones(meshes), []
     for mesh, name in enumerate(names):
         at = float(torque[mesh]), float(path[mesh]), float(angle[mesh])
-        surface.require(name, *at)
+        loaded_surface = surfaces[loaded_flanks[mesh]]
+        loaded_surface.require(name, *at)
         if forces[mesh] != 0.0:
             factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
-        energy_of_pair = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
+        energy_of_pair = (
+            mesh_energy(loaded_surface, *at) if load is None else linear_energy(loaded_surface, load, *at)
+        )
         energies.append(energy_of_pair.with_stiffness_factor(_scale(machine, surface, mesh)))
-    reactions = flank_reactions(surface, poses, contacts, energies, loaded_flanks)
+    reactions = flank_reactions(surfaces, poses, contacts, energies, loaded_flanks)
     closure = closing_beyond(machine, surface, poses, contacts)
-    slopes = force_slopes(surface, reactions, meshes)
+    slopes = force_slopes(surfaces, reactions)
     if ideal:
         slopes, closure = np.zeros_like(slopes), np.zeros_like(closure)
-    lever = 0.0 if ideal else float(ideal_slopes(surface.pair)[2])
-    directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
+    middle = surface.pair.mean_radius
+    directions = ForceDirections(layout, middle, slopes, None if ideal else rim_levers(layout, middle))
     beyond = directions.added_flank_rows(linear) @ displacements
     return OperatingPose(
         machine=replace(_with(machine, factor, closure - beyond), directions=directions),
@@ -278,19 +282,21 @@ def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
     """Return the poses of all meshes at displacements (n,), m and rad, of the coordinates of `linear`.
 
-    The shift of the pinions' bearings (`imperfections.position`) and the assembly errors of the surface's
-    pair are added.
+    The shift of the pinions' bearings (`imperfections.position`, also along their axes) and the assembly
+    errors of the surface's pair are added.
     """
     nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
         displacements_from_assembly[4 * pinion : 4 * pinion + 2] += position
     motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, displacements_from_assembly)
     side = np.array([machine.layout.gears[g].sign for _, g in machine.layout.meshes])
+    axial_places = machine.imperfections.outwards[[pinion for pinion, _ in machine.layout.meshes]]
     return MeshPoses(
         offset=motion.offset + side * nominal.offset,
         gear_axial=motion.gear_axial + nominal.gear_axial,
         shaft_angle_error=motion.shaft_angle_error + side * nominal.shaft_angle_error,
-        outward=motion.outward,
+        outward=motion.outward + axial_places + nominal.pinion_axial,
+        pinion_axial=nominal.pinion_axial,
     )
 
 
@@ -310,16 +316,17 @@ def _factor(
     level of their law: it is found by iteration as the factor with which the mesh is compressed at its
     load as the surface says.
     """
-    torque = at[0] if load is None else load
-    stiffness = surface.at(STIFFNESS, torque, *at[1:])
+    torque, reference_stiffness = at[0] if load is None else load, surface.reference_stiffness
+    surface_of_flank = flank_surfaces(machine, surface)[mesh + len(machine.layout.meshes) * back]
+    stiffness = surface_of_flank.at(STIFFNESS, torque, *at[1:])
     if machine.tables is None:
-        return stiffness / surface.reference_stiffness
+        return stiffness / reference_stiffness
     rest, mesh_factor = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
     factor = 1.0
     for _ in range(FACTOR_STEPS):
         level = torque / (mesh_factor * factor) if load is None else load
-        level = min(level, float(surface.nodes.torques[-1]))
-        before, factor = factor, stiffness / surface.at(STIFFNESS, level, *rest)
+        level = min(level, float(surface_of_flank.nodes.torques[-1]))
+        before, factor = factor, stiffness / surface_of_flank.at(STIFFNESS, level, *rest)
         if abs(factor - before) < SAME_FACTOR:
             break
     return factor
@@ -344,15 +351,15 @@ def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
     `closure` (2 meshes,), m, drive flanks first.
 
     What closes both flanks alike is taken off the half backlash, half the difference off the mesh's
-    error.
+    error, which counts along the drive flank and on the back flank as much more as its arm is longer.
     """
-    flaws = machine.imperfections
+    flaws, arm = machine.imperfections, machine.layout.back_arm
     drive, back = np.split(closure, 2)
     return replace(
         machine,
-        half_backlash=machine.half_backlash - 0.5 * (drive + back),
+        half_backlash=machine.half_backlash - (arm * drive + back) / (1.0 + arm),
         imperfections=replace(
-            flaws, stiffness=flaws.stiffness * factor, error=flaws.error - 0.5 * (drive - back)
+            flaws, stiffness=flaws.stiffness * factor, error=flaws.error - (drive - back) / (1.0 + arm)
         ),
     )
 
@@ -403,14 +410,21 @@ def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
     torques: list[float] = []
     number_of_key: dict[tuple[object, ...], int] = {}
     numbers = []
+    layout = result.machine.layout
     for mesh, force in enumerate(result.forces.tolist()):
         back, torque = force < 0.0, float(result.torque[mesh])
+        # a gear alone has the bodies of the upper one
+        gear = layout.gears[layout.meshes[mesh][1]].side.value if len(layout.gears) > 1 else GEARS[0]
         errors = result.poses.errors(mesh, back)
-        parts = (errors.offset, errors.shaft_angle_error, errors.gear_axial)
-        key = (back, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")
+        if not design.is_spur:
+            errors = replace(errors, pinion_axial=float(result.poses.outward[mesh]))
+        pair = replace(pair_at(design, gear, FLANKS[int(back)]), assembly=errors)
+        parts = (errors.offset, errors.shaft_angle_error, errors.gear_axial, errors.pinion_axial)
+        teeth = pair.shaft_angle, pair.offset
+        key = (back, *teeth, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")
         if key not in number_of_key:
             number_of_key[key] = len(designs)
-            designs.append(replace(pair_at(design, GEARS[0], FLANKS[back]), assembly=errors))
+            designs.append(pair)
             torques.append(torque)
         numbers.append(number_of_key[key])
     return CarryingPairs(designs, torques, np.array(numbers))

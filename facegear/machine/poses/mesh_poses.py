@@ -5,6 +5,14 @@ A pose is what the pair of a mesh meets as assembly errors. The frame of a mesh 
 and s = 1 for the upper, -1 for the lower gear. Pinions tilt about the middle of their faces, gears about a
 point on their axis. The line of action's part of a displacement is what the meshes' deflections hold already:
 it moves no path.
+
+A motion of the pinion against the gear, v of the middle of its face and turn r, is to first order
+
+    offset = v_x + y_m u.r,   error of the shaft angle = r_x,   w = (v_y - E u.r / sin g) / sin g,
+    axial shift = v_z + w cos g,   u = (0, cos g, sin g)
+
+beside turns of both bodies about their axes; y_m, g and E are the middle's place, the shaft angle and the
+offset.
 """
 
 from dataclasses import dataclass, replace
@@ -12,9 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.machine.elastic_coordinates import gear_forces
 from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.machine.linear_model import LinearModel
+from facegear.machine.mesh_frames import ToothKind
 from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.tooth_family import RelativeMotion
 
 PARTS = ("offset", "gear_axial", "shaft_angle_error", "outward")
 """Parts of a pose, in the order of rows."""
@@ -26,16 +37,18 @@ class MeshPoses:
 
     - offset, gear_axial (m), shaft_angle_error (rad): assembly errors of the pair
     - outward: shift of the pinion along its axis, away from the gears' axis, m
+    - pinion_axial: the part of it with which the pair is assembled, at which its paths count, m
     """
 
     offset: Array
     gear_axial: Array
     shaft_angle_error: Array
     outward: Array
+    pinion_axial: float = 0.0
 
     def errors(self, mesh: int, back: bool = False) -> AssemblyErrors:
         """Return the assembly errors that a flank of a mesh meets, as errors of a drive flank; for a single
-        pose of every mesh.
+        pose of every mesh. The pinion stands along its axis as assembled.
 
         Parameters
         ----------
@@ -54,10 +67,49 @@ class MeshPoses:
             offset=-offset if back else offset,
             shaft_angle_error=float(self.shaft_angle_error[mesh]),
             gear_axial=float(self.gear_axial[mesh]),
+            pinion_axial=self.pinion_axial,
         )
 
 
-def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displacements: Array) -> MeshPoses:
+def middle_place(middle: float, axes: RelativeMotion) -> Array:
+    """Return the nominal place of the middle of the pinion's face.
+
+    Parameters
+    ----------
+    middle : float
+        Position of the middle of the pinion's face on its axis, m.
+    axes : RelativeMotion
+        Shaft angle and offset of the nominal axes.
+
+    Returns
+    -------
+    (3,) array
+        Place in the mesh frame, m.
+    """
+    return np.array([axes.offset, 0.0, 0.0]) + middle * axes.basis[1]
+
+
+def to_mesh_frame(sign: float) -> Array:
+    """Return the matrix from the machine's frame at a pinion to that of its mesh.
+
+    With s = `sign`, the mesh's x, y, z are s x, z and -s y of the machine: along the tangent, outwards
+    along the pinion, and along the gears' axis. Where the axes are not square, a vector of the pinion's own
+    frame is then along x, the pinion's axis and across both (`RelativeMotion.basis`).
+
+    Parameters
+    ----------
+    sign : float
+        1 for a mesh with the upper gear, -1 with the lower, dimensionless.
+
+    Returns
+    -------
+    (3, 3) array
+        Dimensionless, a rotation in units of 1.
+    """
+    return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
+
+
+def mesh_poses(linear: LinearModel, layout: Layout, middle: float, displacements: Array) -> MeshPoses:
     """Return the poses at displacements of the linear model's coordinates.
 
     Parameters
@@ -66,7 +118,7 @@ def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displace
         Linear model of the machine.
     layout : Layout
         Bodies and mesh geometry.
-    mean_radius : float
+    middle : float
         Position of the middle of the pinion's face on its axis, m.
     displacements : (..., n) array
         m and rad.
@@ -76,16 +128,18 @@ def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displace
     MeshPoses
         Each part (..., meshes), m and rad.
     """
-    return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, mean_radius)))
+    return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, middle)))
 
 
-def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float, with_pinions: bool = True) -> Array:
+def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: bool = True) -> Array:
     """Return the derivatives of PARTS by the coordinates.
 
     Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
     at the pinion. Coordinates of gears that bend lift the teeth, a shift along the axis, and lean them with
     the rim below the mesh: by its slope along the radius about the tangent, by that round the axis about the
-    line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
+    line through the pitch point that is parallel to the pinion's axis, which is an offset as well. The motion
+    of a rim round the axis moves no path, as a turn of the gear does not. That of spur teeth along the
+    pinion's axis does not either, and is left out.
 
     Parameters
     ----------
@@ -93,7 +147,7 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float, with_pini
         Linear model of the machine.
     layout : Layout
         Bodies and mesh geometry.
-    mean_radius : float
+    middle : float
         Position of the middle of the pinion's face on its axis, m.
     with_pinions : bool
         Whether tilts of pinions with seats on a casing count.
@@ -103,79 +157,137 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float, with_pini
     (4, meshes, n) array
         m and rad for a unit of each coordinate.
     """
-    offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
+    rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
     number_of_label = {label: number for number, label in enumerate(linear.labels)}
     for mesh, (i, g) in enumerate(layout.meshes):
-        side, at = layout.gears[g].sign, layout.angles[i]
-        tangent = np.array([np.cos(at), np.sin(at)])
-        away = np.array([np.sin(at), -np.cos(at)])
+        shifts, turns = _pinion_parts(layout, g, middle)
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-        offset[mesh, pinion], shift[mesh, pinion + 1], outward[mesh, pinion + 2] = side, -side, 1.0
-        offset[mesh, gear : gear + 2] = -side * tangent
-        shift[mesh, gear + 2] = side
-        outward[mesh, gear : gear + 2] = -away
-        leaning, yawing = (
-            number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS
-        )
-        if leaning is not None and yawing is not None:
-            angle[mesh, leaning] = side
-            offset[mesh, yawing] = -side * mean_radius
+        rows[:, mesh, pinion : pinion + 3] = shifts
+        tilts = [number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS]
+        if None not in tilts:
+            rows[:, mesh, tilts] = turns
+        shifts, turns = _gear_parts(layout, i, g, middle)
+        rows[:, mesh, gear : gear + 3] = shifts
         if g in layout.first_tilts:
-            tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
-            rows[:, mesh, tilts] = _gear_tilt_rows(layout, i, g, mean_radius)
+            rows[:, mesh, layout.first_tilts[g] : layout.first_tilts[g] + 2] = turns
     if linear.seat_tilts is not None:
-        _add_seat_tilts(linear, layout, mean_radius, rows, with_pinions)
-    _bending(linear, layout, shift)
-    angle += leaning_rows(linear, layout)
-    if linear.slopes is not None:
-        sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
-        pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
-        offset += sides * pitch_radius / mean_radius * linear.slopes[1]
+        _add_seat_tilts(linear, layout, middle, rows, with_pinions)
+    if linear.slopes is not None and layout.kind is not None:
+        for mesh, (_, g) in enumerate(layout.meshes):
+            rows[:, mesh] += _rim_parts(layout, layout.kind, g, middle) @ linear.slopes[:, mesh]
+    elif linear.slopes is not None:
+        _bend_spur_rims(linear, layout, middle, rows)
     return rows
 
 
-def _gear_tilt_rows(layout: Layout, pinion: int, gear: int, mean_radius: float) -> Array:
-    """Return the derivatives (4, 2) of PARTS of a mesh by tilt_x and tilt_y of its gear, m/rad and
-    rad/rad.
+def _rim_parts(layout: Layout, kind: ToothKind, gear: int, middle: float) -> Array:
+    """Return the derivatives (4, 4) of PARTS by the slopes and motions of a rim below a mesh, those of
+    `LinearModel.slopes` of teeth that push outwards.
+
+    The rim moves the teeth as a rigid whole about the point of the pitch plane below the middle of the
+    pinion's face.
     """
-    side, at = layout.gears[gear].sign, layout.angles[pinion]
-    tangent, away = np.array([np.cos(at), np.sin(at)]), np.array([np.sin(at), -np.cos(at)])
-    height = side * layout.tilt_distance(gear)
-    return np.array([-side * height * away, -side * mean_radius * tangent, -side * tangent, height * tangent])
+    axes, sign = _axes(layout, gear), layout.gears[gear].sign
+    place = middle_place(middle, axes)
+    radius, up = np.hypot(*place[:2]), np.array([0.0, 0.0, 1.0])
+    outwards = np.append(place[:2] / radius, 0.0)
+    around = sign * np.cross(outwards, up)
+    turns = np.cross(np.stack([outwards, around / radius, 0.0 * up, 0.0 * up]), up)
+    motions = np.stack([0.0 * up, 0.0 * up, up, outwards])
+    motions += np.cross(turns, (place[2] + kind.pitch_height(sign)) * up)
+    by_shift, by_turn = _parts(axes, middle)
+    return -by_shift @ motions.T - by_turn @ turns.T
+
+
+def _bend_spur_rims(linear: LinearModel, layout: Layout, middle: float, rows: Array) -> None:
+    """Add to `rows` (4, meshes, n) what rims that bend below spur teeth add, in place."""
+    offset, shift, angle, _ = rows
+    _bending(linear, layout, shift)
+    angle -= linear.slopes[0]
+    sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
+    pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
+    offset += sides * pitch_radius / middle * linear.slopes[1]
+
+
+def _axes(layout: Layout, gear: int) -> RelativeMotion:
+    """Return the motion of the pinions against a gear, in the mesh frame of that gear."""
+    if layout.kind is not None:
+        return layout.kind.motion(layout.gears[gear].sign)
+    return RelativeMotion(layout.pinion_teeth / layout.gear_teeth)
+
+
+def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
+    """Return the derivatives (4, 3) of PARTS by motions of the middle of a pinion's face and by its turns, in
+    the mesh frame, m/m and m/rad.
+    """
+    sine, cosine, (_, _, up) = axes.sine, axes.cosine, axes.basis
+    by_shift, by_turn = np.zeros((2, len(PARTS), 3))
+    by_shift[0, 0], by_shift[1, 2], by_shift[3, 1] = 1.0, 1.0, 1.0 / sine
+    by_turn[0], by_turn[2, 0], by_turn[3] = middle * up, 1.0, -axes.offset / sine**2 * up
+    by_shift[1] += cosine * by_shift[3]
+    by_turn[1] = cosine * by_turn[3]
+    return by_shift, by_turn
+
+
+def _pinion_parts(layout: Layout, gear: int, middle: float) -> tuple[Array, Array]:
+    """Return the derivatives of PARTS at a gear by motions (4, 3) along x, y, z of a pinion and by its tilts
+    (4, 2) about x and y.
+    """
+    axes = _axes(layout, gear)
+    to_mesh = axes.basis.T @ to_mesh_frame(layout.gears[gear].sign)
+    by_shift, by_turn = _parts(axes, middle)
+    return by_shift @ to_mesh, by_turn @ to_mesh[:, :2]
+
+
+def _gear_parts(layout: Layout, pinion: int, gear: int, middle: float) -> tuple[Array, Array]:
+    """Return the derivatives of PARTS of a mesh by motions (4, 3) along x, y, z of its gear and by tilts
+    (4, 2) of the gear about x and y.
+    """
+    axes, at = _axes(layout, gear), layout.angles[pinion]
+    cosine, sine = np.cos(at), np.sin(at)
+    to_mesh = to_mesh_frame(layout.gears[gear].sign) @ np.array(
+        [[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]]
+    )
+    by_shift, by_turn = _parts(axes, middle)
+    arm = middle_place(middle, axes) + np.array([0.0, 0.0, layout.tilt_distance(gear)])
+    at_middle = np.cross(to_mesh[:, :2], arm, axisa=0).T
+    return -by_shift @ to_mesh, -by_shift @ at_middle - by_turn @ to_mesh[:, :2]
 
 
 def _add_seat_tilts(
-    linear: LinearModel, layout: Layout, mean_radius: float, rows: Array, with_pinions: bool
+    linear: LinearModel, layout: Layout, middle: float, rows: Array, with_pinions: bool
 ) -> None:
     """Add to `rows` (4, meshes, n) what bodies that tilt with their seats on a casing add, in place."""
     assert linear.seat_tilts is not None
     tilts = linear.over_all(linear.seat_tilts)
     for mesh, (i, g) in enumerate(layout.meshes):
-        side = layout.gears[g].sign
-        rows[:, mesh] += _gear_tilt_rows(layout, i, g, mean_radius) @ tilts[len(layout.pinions) + g]
+        rows[:, mesh] += _gear_parts(layout, i, g, middle)[1] @ tilts[len(layout.pinions) + g]
         if with_pinions:
-            rows[2, mesh] += side * tilts[i, 0]
-            rows[0, mesh] -= side * mean_radius * tilts[i, 1]
+            rows[:, mesh] += _pinion_parts(layout, g, middle)[1] @ tilts[i]
 
 
-def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
-    """Return the part of the error of the shaft angle that the slopes of rims that bend make.
+def rim_levers(layout: Layout, middle: float) -> Array:
+    """Return the moments that unit forces of flanks have about the tangent below the middle of the pinion's
+    face, of which rows of rims that bend know nothing.
 
     Parameters
     ----------
-    linear : LinearModel
-        Linear model of the machine.
     layout : Layout
         Bodies and mesh geometry.
+    middle : float
+        Position of the middle of the pinion's face on its axis, m.
 
     Returns
     -------
-    (meshes, n) array
-        rad for a unit of each coordinate.
+    (2 meshes,) array
+        m, drive flanks first: the part of a force along the gear's axis times its way outwards from there.
     """
-    if linear.slopes is None:
-        return np.zeros((len(layout.meshes), linear.size))
-    return -linear.slopes[0]
+    levers = np.zeros((2, len(layout.meshes)))
+    for mesh, (_, gear) in enumerate(layout.meshes):
+        forces = gear_forces(layout, gear)
+        radius = np.hypot(*middle_place(middle, _axes(layout, gear))[:2])
+        levers[:, mesh] = forces.directions[:, 0] * (forces.radii - radius)
+    return levers.ravel()
 
 
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
@@ -206,33 +318,34 @@ class ForceDirections:
     ----------
     layout
         Layout of the machine.
-    mean_radius
+    middle
         Position of the middle of the pinion's face on its axis, m.
     slopes : (2 meshes, parts)
         Derivatives of the deflections by the parts of a pose, drive flanks first; m/m and m/rad.
-    lever
-        Lever of the ideal contact for an error of the shaft angle, m/rad: rows of a model have it of bodies
-        that tilt, but not of rims that bend.
+    levers : (2 meshes,)
+        `rim_levers`, m: rows of a model have them of bodies that tilt, but not of rims that bend; None to
+        leave them out.
     """
 
     layout: Layout
-    mean_radius: float
+    middle: float
     slopes: Array
-    lever: float = 0.0
+    levers: Array | None = None
 
     def __call__(self, base_model: LinearModel) -> LinearModel:
-        """Return the model whose flank rows have these directions: `added_flank_rows`, and `lever` times
-        the error of the shaft angle by rims that bend, are added to its rows.
+        """Return the model whose flank rows have these directions: `added_flank_rows` less `levers` times
+        the slopes of rims along the radius is added to its rows.
         """
-        leaning = self.lever * leaning_rows(base_model, self.layout)
-        added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
+        added_rows = self.added_flank_rows(base_model)
+        if self.levers is not None and base_model.slopes is not None:
+            added_rows -= self.levers[:, None] * np.tile(base_model.slopes[0], (2, 1))
         return replace(base_model, rows=base_model.rows + added_rows)
 
     def added_flank_rows(self, model: LinearModel) -> Array:
         """Return what the directions add to the rows of the ideal contact: `slopes` times `pose_rows`.
 
-        A mesh turns no pinion about a diameter, as the middle of its face takes the force: columns of the
-        pinions' tilts are zero.
+        Columns of the pinions' tilts are zero where the middles of their faces take the force
+        (`Layout.meshes_tilt_pinions`).
 
         Parameters
         ----------
@@ -244,7 +357,9 @@ class ForceDirections:
         (2 meshes, n) array
             m for a unit of each coordinate, drive flanks first.
         """
-        parts = pose_rows(model, self.layout, self.mean_radius, with_pinions=False)
-        tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
-        parts[:, :, np.isin(model.labels, tilts)] = 0.0
+        has_tilts = self.layout.meshes_tilt_pinions
+        parts = pose_rows(model, self.layout, self.middle, with_pinions=has_tilts)
+        if not has_tilts:
+            tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
+            parts[:, :, np.isin(model.labels, tilts)] = 0.0
         return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))

@@ -17,7 +17,8 @@ Flanks are numbered with all drive flanks first, then all back flanks. What defl
 error to first order is `ideal_slopes`; the rest is counted here.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from facegear.machine.poses.mesh_poses import PARTS, MeshPoses
 from facegear.machine.poses.surface import PoseSurface
 from facegear.teeth.conjugate import ConjugateContact, PairNumbers, conjugate_slopes, contact_at
 from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import FLANKS, errors_at
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(12)
 """Points and weights of Gauss's rule between two torques of the surface; the integrand is an exponential of a
@@ -102,7 +104,7 @@ def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) 
     """
     if torque <= 0.0:
         return MeshEnergy(0.0, 0.0, 0.0, 0.0, 0.0)
-    base, knots = surface.pair.pinion_base_radius, np.log(surface.nodes.torques)
+    base, knots = surface.pair.normal_arm, np.log(surface.nodes.torques)
     stiffness_logs, last = surface.stiffness_logs(path, angle), float(np.log(torque))
     lightest = min(last, float(knots[0]))
     slope = stiffness_logs @ surface.torque_weights(knots[0], 1)
@@ -140,7 +142,7 @@ def linear_energy(surface: PoseSurface, load: float, torque: float, path: float,
         N, m and J.
     """
     log, by_path, by_angle = surface.stiffness_logs(path, angle) @ surface.torque_weights(float(np.log(load)))
-    force = torque / surface.pair.pinion_base_radius
+    force = torque / surface.pair.normal_arm
     approach = force / float(np.exp(log))
     energy = 0.5 * force * approach
     return MeshEnergy(force, approach, energy, float(-energy * by_path), float(-energy * by_angle))
@@ -173,15 +175,35 @@ def _above(surface: PoseSurface, stiffness_logs: Array, ends: Array) -> Array:
     return np.array([weights.sum(), -(weights * by_path).sum(), -(weights * by_angle).sum()])
 
 
+def flank_surfaces(machine: Machine, surface: PoseSurface) -> list[PoseSurface]:
+    """Return the surface of every flank.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    list of PoseSurface
+        2 meshes entries, drive flanks first.
+    """
+    layout = machine.layout
+    sides = [layout.gears[gear].side.value for _, gear in layout.meshes]
+    return [surface.of_flank(side, flank) for flank in FLANKS for side in sides]
+
+
 def unloaded_contacts(
-    surface: PoseSurface, poses: MeshPoses, names: tuple[str, ...]
+    surfaces: list[PoseSurface], poses: MeshPoses, names: tuple[str, ...]
 ) -> list[ConjugateContact]:
     """Return the unloaded contact of all drive flanks, then all back flanks.
 
     Parameters
     ----------
-    surface : PoseSurface
-        Contact over the pose.
+    surfaces : list of PoseSurface
+        Surface of every flank, by `flank_surfaces`.
     poses : MeshPoses
         Poses of the meshes.
     names : tuple of str
@@ -198,18 +220,15 @@ def unloaded_contacts(
         If the flanks of a mesh do not face each other.
     """
     contacts = []
-    for back in (False, True):
-        for mesh, name in enumerate(names):
-            errors = poses.errors(mesh, back)
-            contact = contact_at(surface.pair, errors)
-            if contact is None:
-                pose_text = (
-                    f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.gear_axial:.4g} um"
-                )
-                raise NotConverged(
-                    "operating pose", f"mesh {name}", f"no flanks face each other at {pose_text}"
-                )
-            contacts.append(contact)
+    for flank, surface in enumerate(surfaces):
+        mesh = flank % len(names)
+        errors = poses.errors(mesh, flank >= len(names))
+        contact = contact_at(surface.pair, errors)
+        if contact is None:
+            pose_text = f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.gear_axial:.4g} um"
+            problem = f"no flanks face each other at {pose_text}"
+            raise NotConverged("operating pose", f"mesh {names[mesh]}", problem)
+        contacts.append(contact)
     return contacts
 
 
@@ -219,7 +238,8 @@ def closing_beyond(
     """Return by how much the exact unloaded contact closes every flank beyond what its deflection counts.
 
     It is the change of the exact transmission error from the flank as assembled, less `ideal_slopes`
-    times the change of the assembly errors; 0 where the flanks as assembled do not face each other.
+    times the change of the assembly errors; 0 where the flanks as assembled do not face each other. A shift
+    of a pinion along its axis closes flanks in proportion, so that nothing is beyond.
 
     Parameters
     ----------
@@ -237,10 +257,10 @@ def closing_beyond(
     (2 meshes,) array
         m, drive flanks first; positive closes the flank.
     """
-    pair, meshes = surface.pair, len(machine.layout.meshes)
+    surfaces, meshes = flank_surfaces(machine, surface), len(machine.layout.meshes)
     closure = np.zeros(2 * meshes)
     for flank, contact in enumerate(contacts):
-        mesh, back = flank % meshes, flank >= meshes
+        mesh, back, pair = flank % meshes, flank >= meshes, surfaces[flank].pair
         nominal = assembly_errors(machine, surface, mesh, back)
         at_rest = contact_at(pair, nominal)
         if at_rest is None:
@@ -251,7 +271,7 @@ def closing_beyond(
 
 
 def flank_reactions(
-    surface: PoseSurface,
+    surfaces: list[PoseSurface],
     poses: MeshPoses,
     contacts: list[ConjugateContact],
     energies: list[MeshEnergy],
@@ -264,8 +284,8 @@ def flank_reactions(
 
     Parameters
     ----------
-    surface : PoseSurface
-        Contact over the pose.
+    surfaces : list of PoseSurface
+        Surface of every flank, by `flank_surfaces`.
     poses : MeshPoses
         Poses of the meshes.
     contacts : list of ConjugateContact
@@ -283,8 +303,8 @@ def flank_reactions(
     meshes = len(energies)
     reactions = np.zeros((2 * meshes, 3))
     for flank, contact in enumerate(contacts):
-        energy = energies[flank % meshes]
-        slopes = conjugate_slopes(surface.pair, poses.errors(flank % meshes, flank >= meshes), contact)
+        energy, pair = energies[flank % meshes], surfaces[flank].pair
+        slopes = conjugate_slopes(pair, poses.errors(flank % meshes, flank >= meshes), contact)
         reactions[flank] = slopes.transmission_error
         if flank == loaded_flanks[flank % meshes] and energy.force > 0.0:
             by_angle = np.array([0.0, 0.0, energy.by_angle])
@@ -292,7 +312,7 @@ def flank_reactions(
     return reactions
 
 
-def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
+def force_slopes(surfaces: list[PoseSurface], reactions: Array) -> Array:
     """Return the slopes of the forces of all flanks as `ForceDirections.slopes`: reactions less
     `ideal_slopes`.
 
@@ -301,24 +321,23 @@ def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
 
     Parameters
     ----------
-    surface : PoseSurface
-        Contact over the pose.
+    surfaces : list of PoseSurface
+        Surface of every flank, by `flank_surfaces`.
     reactions : (2 meshes, 3) array
         Derivatives of `flank_reactions`, m/m and m/rad.
-    meshes : int
-        Number of meshes.
 
     Returns
     -------
     (2 meshes, parts) array
         m/m and m/rad, columns as PARTS.
     """
-    slopes = np.zeros((2 * meshes, len(PARTS)))
-    slopes[:, :3] = reactions - ideal_slopes(surface.pair)
-    slopes[meshes:, 0] *= -1.0
+    slopes = np.zeros((len(surfaces), len(PARTS)))
+    slopes[:, :3] = reactions - [ideal_slopes(surface.pair) for surface in surfaces]
+    slopes[len(surfaces) // 2 :, 0] *= -1.0
     return slopes
 
 
+@lru_cache(maxsize=32)
 def ideal_slopes(pair: PairNumbers) -> Array:
     """Return the deflection of a drive flank for a unit offset, axial shift and error of the shaft angle,
     to first order, along the normal of the ideal contact.
@@ -331,10 +350,11 @@ def ideal_slopes(pair: PairNumbers) -> Array:
     Returns
     -------
     (3,) array
-        m/m, m/m and m/rad.
+        m/m, m/m and m/rad; shared between calls, not to be written.
     """
-    cosine, sine = np.cos(pair.pressure_angle), np.sin(pair.pressure_angle)
-    return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
+    line = pair.contact_line(AssemblyErrors())
+    assert line is not None  # without errors of assembly there always is one
+    return line.error_slopes()[0][:3]
 
 
 def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
@@ -356,13 +376,8 @@ def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: boo
     AssemblyErrors
         m and rad.
     """
-    side = machine.layout.gears[machine.layout.meshes[mesh][1]].sign
-    nominal = surface.nominal
-    return replace(
-        nominal,
-        offset=(-side if back else side) * nominal.offset,
-        shaft_angle_error=side * nominal.shaft_angle_error,
-    )
+    gear = machine.layout.gears[machine.layout.meshes[mesh][1]].side.value
+    return errors_at(surface.nominal, gear, FLANKS[int(back)])
 
 
 def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
@@ -385,9 +400,10 @@ def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: boo
         m and rad.
     """
     errors = assembly_errors(machine, surface, mesh, back)
-    contact = contact_at(surface.pair, errors)
+    flank = mesh + len(machine.layout.meshes) * int(back)
+    contact = contact_at(flank_surfaces(machine, surface)[flank].pair, errors)
     assert contact is not None
-    return contact.y, errors.shaft_angle_error
+    return contact.path, errors.shaft_angle_error
 
 
 def _three(errors: AssemblyErrors) -> Array:

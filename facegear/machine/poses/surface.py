@@ -1,14 +1,19 @@
 """Contact of a pair over its pose: a response surface in torque, unloaded path and error of the shaft angle.
 
 At equal unloaded path the contact all but does not depend on how offset and axial shift share it, so that
-three coordinates are enough: ln T, the place y0 of the unloaded contact along the pinion, and dgamma.
-Logarithms of positive quantities are interpolated by cubic splines over y0 and over ln T, and linearly over
-dgamma. Nothing is extrapolated.
+three coordinates are enough: ln T, the place y0 of the unloaded contact along the pinion, and dgamma. Of
+every kind of teeth y0 is where the common normal passes the pinion's pitch point, about the middle of a path
+that a helix lets run along the face; a shift of the pinion along its axis moves the ends of its face alone
+and has no coordinate. Logarithms of positive quantities are interpolated by cubic splines over y0 and over
+ln T, and linearly over dgamma. Nothing is extrapolated.
+
+Flanks that differ, as drive and coast flanks of a helix do, have surfaces of their own.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from math import acos
 from typing import Self
 
 import numpy as np
@@ -18,6 +23,7 @@ from facegear.arrays import Array, Arrays
 from facegear.errors import InvalidInput
 from facegear.teeth.conjugate import PairNumbers, contact_at, offset_for
 from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import FLANKS, GEARS
 
 STIFFNESS, RADIUS = "stiffness_n_per_m", "path_radius_m"
 """Names of two of the QUANTITIES."""
@@ -38,11 +44,16 @@ INSIDE, BEYOND = 0.32, 0.12
 LEANING = float(np.radians(0.05))
 """Error of the shaft angle (rad) to either side that the nodes cover where bodies tilt or bend."""
 
+FLATTEST = acos(1.0 / 1.002)
+"""Slope of the common normal (rad) at the innermost node: the path of spur teeth is 0.2 % outside the radius
+at which the slope vanishes.
+"""
+
 NO_TORQUE = 1e-9
 """Torque over the smallest of the nodes, dimensionless, that stands for less: zero has no logarithm."""
 SURFACE_ARRAYS = {
     "pair": (None,),
-    "errors": (3,),
+    "errors": (4,),
     "angle_rad": (None,),
     "path_m": (None,),
     "torque_n_m": (None,),
@@ -51,6 +62,10 @@ SURFACE_ARRAYS = {
     RADIUS: (None, None, None),
 }
 """Arrays of a surface with their shapes; quantities beside these are stored where they are known."""
+FLANK_NUMBERS = "flank_surface"
+"""Name of the array (gears, flanks) with the number of each flank's surface, stored where there are several;
+names of the arrays of all but the first begin with `further` and the surface's number.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +76,7 @@ class Nodes:
     paths: Array
     torques: Array
 
-    def assemblies(self, pair: PairNumbers) -> list[AssemblyErrors]:
+    def assemblies(self, pair: PairNumbers, pinion_axial: float = 0.0) -> list[AssemblyErrors]:
         """Return the assembly errors at which contact is solved: for each angle, all paths.
 
         The offset alone is chosen such that the unloaded contact lies at the path.
@@ -70,6 +85,8 @@ class Nodes:
         ----------
         pair : PairNumbers
             Numbers of the pair.
+        pinion_axial : float
+            Shift of the pinion outwards along its axis, m, that of its assembly.
 
         Returns
         -------
@@ -84,13 +101,13 @@ class Nodes:
         assemblies = []
         for angle in self.angles.tolist():
             for path in self.paths.tolist():
-                errors = AssemblyErrors(shaft_angle_error=angle)
+                errors = AssemblyErrors(shaft_angle_error=angle, pinion_axial=pinion_axial)
                 offset = offset_for(pair, path, errors)
                 if offset is None:
                     raise InvalidInput(
                         "path of the contact", f"{1e3 * path:.6g} mm", "one that the pair can have"
                     )
-                assemblies.append(AssemblyErrors(offset, angle))
+                assemblies.append(replace(errors, offset=offset))
         return assemblies
 
 
@@ -123,8 +140,9 @@ def surface_nodes(pair: PairNumbers, nominal: AssemblyErrors, largest: float, ti
         raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), requirement)
     at_rest = contact_at(pair, nominal)
     width = pair.last_end - pair.first_end
-    middle = pair.mean_radius if at_rest is None else at_rest.y
-    first = max(middle - INSIDE * width, 1.002 * pair.gear_base_radius)
+    middle = pair.mean_radius if at_rest is None else at_rest.path
+    flattest = pair.path_at(FLATTEST, AssemblyErrors(pinion_axial=nominal.pinion_axial))
+    first = max(middle - INSIDE * width, flattest)
     last = max(pair.last_end, middle) + BEYOND * width
     reach = np.array([-LEANING, LEANING]) if tilting else np.zeros(1)
     return Nodes(
@@ -150,6 +168,10 @@ class PoseSurface:
         By their names in QUANTITIES; those that are not known are left out.
     reference_torque
         Torque at which the machine takes a mesh stiffness that does not depend on the load (N m).
+    further
+        Surfaces of flanks that differ from the upper gear's drive flank, which this one is of.
+    flank_numbers
+        Number of the surface of drive and back flank by GEARS: 0 for this one, then those of `further`.
     """
 
     pair: PairNumbers
@@ -157,22 +179,50 @@ class PoseSurface:
     nodes: Nodes
     values: Mapping[str, Array]
     reference_torque: float
+    further: "tuple[PoseSurface, ...]" = ()
+    flank_numbers: tuple[tuple[int, int], ...] = ((0, 0), (0, 0))
+
+    def of_flank(self, gear: str, flank: str) -> "PoseSurface":
+        """Return the surface of a flank, whose pair and assembly are those of a drive flank.
+
+        Parameters
+        ----------
+        gear : str
+            `upper` or `lower`.
+        flank : str
+            `drive` or `back`.
+
+        Returns
+        -------
+        PoseSurface
+            This surface, or one of `further`.
+        """
+        number = self.flank_numbers[GEARS.index(gear)][FLANKS.index(flank)]
+        return self if number == 0 else self.further[number - 1]
 
     @property
     def arrays(self) -> dict[str, Array]:
         """Surface as named arrays that `of_arrays` reads again, SI units: those of SURFACE_ARRAYS and all
-        other `values`.
+        other `values`, then those of further surfaces.
         """
         errors = self.nominal
-        return {
+        arrays = {
             "pair": self.pair.array,
-            "errors": np.array([errors.offset, errors.shaft_angle_error, errors.gear_axial]),
+            "errors": np.array(
+                [errors.offset, errors.shaft_angle_error, errors.gear_axial, errors.pinion_axial]
+            ),
             "angle_rad": self.nodes.angles,
             "path_m": self.nodes.paths,
             "torque_n_m": self.nodes.torques,
             "reference_torque_n_m": np.array(self.reference_torque),
             **self.values,
         }
+        if not self.further:
+            return arrays
+        arrays[FLANK_NUMBERS] = np.array(self.flank_numbers)
+        for number, surface in enumerate(self.further, start=1):
+            arrays |= {f"further{number}_{name}": values for name, values in surface.arrays.items()}
+        return arrays
 
     @classmethod
     def of_arrays(cls, arrays: Arrays) -> Self:
@@ -188,7 +238,19 @@ class PoseSurface:
         Self
             SI units.
         """
+        numbers = np.asarray(arrays.get(FLANK_NUMBERS, np.zeros((2, 2), int)))
         return cls(
+            further=tuple(
+                cls.of_arrays(
+                    {
+                        name.removeprefix(f"further{number}_"): values
+                        for name, values in arrays.items()
+                        if name.startswith(f"further{number}_")
+                    }
+                )
+                for number in range(1, int(numbers.max()) + 1)
+            ),
+            flank_numbers=tuple((int(drive), int(back)) for drive, back in numbers),
             pair=PairNumbers.of_array(arrays["pair"]),
             nominal=AssemblyErrors(*(float(value) for value in arrays["errors"])),
             nodes=Nodes(arrays["angle_rad"], arrays["path_m"], arrays["torque_n_m"]),
@@ -253,7 +315,7 @@ class PoseSurface:
         """
         contact = contact_at(self.pair, self.nominal)
         assert contact is not None
-        return self.at(STIFFNESS, self.reference_torque, contact.y, self.nominal.shaft_angle_error)
+        return self.at(STIFFNESS, self.reference_torque, contact.path, self.nominal.shaft_angle_error)
 
     def stiffness_logs(self, path: float, angle: float) -> Array:
         """Return the logarithm of the stiffness at the torques of the nodes, and its derivatives by path

@@ -10,7 +10,7 @@ from facegear.arrays import Array
 from facegear.errors import InvalidInput, NotConverged
 from facegear.machine.machine import Machine
 from facegear.machine.poses.fixed_point import OperatingPose, operating_pose
-from facegear.machine.poses.posed_flanks import nominal_contact
+from facegear.machine.poses.posed_flanks import flank_surfaces, nominal_contact
 from facegear.machine.poses.surface import QUANTITIES, RADIUS, STIFFNESS, PoseSurface
 
 FRACTIONS = np.arange(1, 16) / 10.0
@@ -91,14 +91,15 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
     pd.DataFrame
         One row a mesh: MESH_COLUMNS and the columns PERCENT of the quantities that the surface has.
     """
-    layout, pair, rows = machine.layout, surface.pair, []
+    layout, rows = machine.layout, []
     drive, back = np.split(result.flank_closure, 2)
-    for mesh, name in enumerate(layout.mesh_names):
+    surfaces = loaded_surfaces(result, surface)
+    for mesh, (name, loaded_surface) in enumerate(zip(layout.mesh_names, surfaces, strict=True)):
         on_back, angle = result.forces[mesh] < 0.0, float(result.angle[mesh])
         at = float(result.torque[mesh]), float(result.path[mesh]), angle
         rest = nominal_contact(machine, surface, mesh, on_back)
-        values = {quantity: surface.at(quantity, *at) for quantity in surface.values}
-        nominal = {quantity: surface.at(quantity, at[0], *rest) for quantity in surface.values}
+        values = {quantity: loaded_surface.at(quantity, *at) for quantity in loaded_surface.values}
+        nominal = {quantity: loaded_surface.at(quantity, at[0], *rest) for quantity in loaded_surface.values}
         has_load = result.forces[mesh] != 0.0
         rows.append(
             {
@@ -116,8 +117,8 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
                 "unloaded_path_mm": 1e3 * at[1],
                 "path_mm": 1e3 * values[RADIUS] if has_load else np.nan,
                 "path_as_assembled_mm": 1e3 * nominal[RADIUS] if has_load else np.nan,
-                "to_inner_end_mm": 1e3 * (at[1] - pair.first_end),
-                "to_outer_end_mm": 1e3 * (pair.last_end - at[1]),
+                "to_inner_end_mm": 1e3 * (at[1] - loaded_surface.pair.first_end),
+                "to_outer_end_mm": 1e3 * (loaded_surface.pair.last_end - at[1]),
                 "stiffness_factor": result.factor[mesh],
                 **{
                     column: 100.0 * (values[quantity] / nominal[quantity] - 1.0) if has_load else np.nan
@@ -129,11 +130,31 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
     return pd.DataFrame(rows)
 
 
+def loaded_surfaces(result: OperatingPose, surface: PoseSurface) -> list[PoseSurface]:
+    """Return the surface of the flank of each mesh that carries, of its drive flank where none does.
+
+    Parameters
+    ----------
+    result : OperatingPose
+        Converged pose.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    list of PoseSurface
+        One for each mesh.
+    """
+    surfaces, meshes = flank_surfaces(result.machine, surface), len(result.forces)
+    return [surfaces[mesh + meshes * int(force < 0.0)] for mesh, force in enumerate(result.forces)]
+
+
 def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
     """Return the reactions of every mesh on its gear, as REACTIONS names them.
 
-    With the energy's derivatives r by offset, axial shift and error of the shaft angle they are r_offset,
-    -r_shift and -r_angle - mean radius * r_shift.
+    The energy's derivatives by offset and axial shift are the components of the force F across both axes and
+    along the gear's, its component along the pinion's axis is F times the sine of the base helix, and the
+    derivative by the shaft angle is its moment about the middle of the pinion's face.
 
     Parameters
     ----------
@@ -147,8 +168,16 @@ def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
     (meshes, 3) array
         N, N and N m.
     """
-    tangential, shifting, turning = result.reactions.T
-    return np.stack([tangential, -shifting, -turning - surface.pair.mean_radius * shifting], axis=1)
+    rows = []
+    for loaded_surface, force, reactions in zip(
+        loaded_surfaces(result, surface), np.abs(result.forces), result.reactions, strict=True
+    ):
+        pair, (tangential, shifting, turning) = loaded_surface.pair, reactions.tolist()
+        sine, cosine = pair.axes.sine, pair.axes.cosine
+        outwards = (force * pair.base_helix_sine + shifting * cosine) / sine
+        overturning = turning + pair.mean_radius * (sine * shifting + cosine * outwards)
+        rows.append((tangential, -shifting, -overturning))
+    return np.array(rows)
 
 
 def with_margins(meshes: pd.DataFrame, margins: Sequence[Mapping[str, float] | None]) -> pd.DataFrame:
@@ -259,12 +288,13 @@ def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, p
             }
             for mesh, name in enumerate(names)
         ]
+        pairs = [flank_surface.pair for flank_surface in loaded_surfaces(result, surface)]
         for end, sign in (("inner", -1.0), ("outer", 1.0)):
-            radius = surface.pair.first_end if end == "inner" else surface.pair.last_end
-            now = sign * (result.path - radius) > 0.0
-            before = np.zeros(len(names), bool) if last is None else sign * (last[1] - radius) > 0.0
+            radii = np.array([pair.first_end if end == "inner" else pair.last_end for pair in pairs])
+            now = sign * (result.path - radii) > 0.0
+            before = np.zeros(len(names), bool) if last is None else sign * (last[1] - radii) > 0.0
             for mesh in np.flatnonzero(now & ~before).tolist():
-                start = 0.0 if last is None else last[0]
+                start, radius = 0.0 if last is None else last[0], float(radii[mesh])
                 crossing_fraction = _crossing(machine, surface, mesh, sign, radius, (start, fraction))
                 exits.append((names[mesh], crossing_fraction, end, 1e3 * radius))
         last = fraction, result.path
@@ -353,7 +383,8 @@ def _radius(surface: PoseSurface, result: OperatingPose, mesh: int) -> float:
     """Return the loaded contact radius of a mesh from the surface, m; nan without load."""
     if result.forces[mesh] == 0.0:
         return float("nan")
-    return surface.at(RADIUS, float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh]))
+    at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
+    return loaded_surfaces(result, surface)[mesh].at(RADIUS, *at)
 
 
 def _flank(force: float) -> str:

@@ -15,6 +15,7 @@ from facegear.motion.integrator.kernel_system import (
     make_runner,
     pack,
     packed_system,
+    shift_count,
     weights_of,
 )
 from facegear.motion.integrator.records import (
@@ -298,7 +299,7 @@ class Integrator:
             If a step fails.
         """
         log = self._run(state, periods, longest=self.longest_step, turns=count)
-        return extrema_of(log)
+        return extrema_of(log, self.rows)
 
     def accelerations(self, phase: float, state: Array) -> Array:
         """Return the second derivatives of the coordinates by phase.
@@ -385,7 +386,7 @@ def run_machines(
         Results of all machines; result_of(), steps_of() and extrema_of() read it.
     """
     first, count = integrators[0], len(integrators)
-    n, m = first.size, first.rows
+    n, m = first.size, first.rows + shift_count(first.system)
     columns = np.zeros((count, 0, 2, n)) if tangents is None else tangents.reshape(count, -1, 2, n)
     steps_up_to = [integrator.longest_step if fine else longest for integrator in integrators]
     polynomial = np.zeros((0, m))
@@ -439,7 +440,7 @@ def result_of(log: motion.Log, number: int, integrator: Integrator, periods: int
         ends=ends,
         tangents=log.tangents[number],
         samples=log.samples[number, : periods * (log.samples.shape[1] // log.periods)],
-        fractions=log.fractions[number] / (TAU * periods)
+        fractions=log.fractions[number, :, : integrator.rows] / (TAU * periods)
         if has_fractions
         else np.zeros((3, integrator.rows)),
         divergence=float(log.divergence[number]),

@@ -91,18 +91,23 @@ def system_numbers(system: System) -> dict[str, Any]:
     dict
         Arrays, numbers and flags in SI units; what `_kernels.motion.system` takes.
     """
-    n, rubbing = system.size, system.rubbing
+    n, rubbing, phase_shifts = system.size, system.rubbing, shift_count(system)
+    jacobian = system.mesh_jacobian
+    if system.phase_shifts is not None:
+        jacobian = np.concatenate([jacobian, system.phase_shifts])
+    still = np.zeros(phase_shifts)
     return {
-        "jacobian": _contiguous(system.mesh_jacobian),
+        "jacobian": _contiguous(jacobian),
         "omega_squared": _contiguous(system.omega_squared),
         "damping": _contiguous(system.damping),
         "weights": weights_of(system),
-        "mesh_damping": _contiguous(system.mesh_damping),
-        "lower": lower_edges(system),
-        "upper": _contiguous(system.upper),
-        "leverage": (system.mesh_jacobian**2).sum(axis=1),
-        "error": _contiguous(system.error),
-        "error_kind": np.ascontiguousarray(system.error_kind, np.int64),
+        "mesh_damping": np.append(_contiguous(system.mesh_damping), still),
+        # Equal edges: a place is never open.
+        "lower": np.append(lower_edges(system), still),
+        "upper": np.append(_contiguous(system.upper), still),
+        "leverage": (jacobian**2).sum(axis=1),
+        "error": _contiguous(_errors(system)),
+        "error_kind": np.append(system.error_kind, np.full(phase_shifts, len(system.error))).astype(np.int64),
         "load": _contiguous(system.load),
         "damping_when_open": bool(system.damping_when_open),
         # Without dampers that could pull nothing is cut.
@@ -117,6 +122,29 @@ def system_numbers(system: System) -> dict[str, Any]:
         "rubbing_directions": np.zeros((0, n)) if rubbing is None else _contiguous(rubbing.directions),
         "coupling": _coupling(system.coupling, n),
     }
+
+
+def shift_count(system: System) -> int:
+    """Return the number of rows that a system has for the places of its contacts in the mesh cycle.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    int
+        Its contacts, or 0 where they do not move.
+    """
+    return 0 if system.phase_shifts is None else len(system.phase_shifts)
+
+
+def _errors(system: System) -> Array:
+    """Return the series (kinds, 2, harmonics + 1) of the errors, m; with places one of zeros for them."""
+    if system.phase_shifts is None:
+        return system.error
+    return np.concatenate([system.error, np.zeros((1, *system.error.shape[1:]))])
 
 
 @lru_cache(maxsize=16)

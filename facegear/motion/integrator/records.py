@@ -53,20 +53,22 @@ def steps_of(log: motion.Log) -> Steps:
     return Steps(*(getattr(log, f"step_{name}") for name in Steps._fields))
 
 
-def extrema_of(log: motion.Log) -> Extrema:
+def extrema_of(log: motion.Log, rows: int) -> Extrema:
     """Return the extrema that a run of one machine has stored.
 
     Parameters
     ----------
     log : motion.Log
         Log of the run.
+    rows : int
+        Number m of rows of meshes, flanks and rings.
 
     Returns
     -------
     Extrema
         Deflections where they change direction.
     """
-    return Extrema(log.turning_points, log.turning_counts)
+    return Extrema(log.turning_points[:rows], log.turning_counts[:rows])
 
 
 class Sums(NamedTuple):
@@ -133,7 +135,10 @@ def sums_of(log: motion.Log, number: int, n: int, m: int) -> Sums:
             *(np.zeros(shape) for shape in ((n,), (m,), (0, n), (0, n, n), (0, m), (0, m), (2, m))),
             *(np.zeros(m) for _ in range(3)),
         )
-    return Sums(*(getattr(log, name)[number] for name in Sums._fields))
+    by_coordinate = ("origin", "coordinates", "products")
+    return Sums(
+        *(getattr(log, name)[number][..., : n if name in by_coordinate else m] for name in Sums._fields)
+    )
 
 
 SUCCESS, TOO_MANY_STEPS, NOT_FINITE = range(3)

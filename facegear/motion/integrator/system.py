@@ -21,6 +21,7 @@ from facegear.machine.flanks import mesh_contacts
 from facegear.machine.machine import Machine, OpenFlanks
 from facegear.meshing.law import MeshLaw
 from facegear.meshing.linear import different
+from facegear.meshing.moving_law import MovingLaw, moving_law
 from facegear.motion.integrator.reduction import Coupling, Reduction
 
 RING_ROWS = 3
@@ -71,6 +72,9 @@ class System:
     coupling
         Forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or None; the
         diagonal of its dampers is in `damping` and not in them.
+    phase_shifts : (contacts, n) array or None
+        Matrix that turns coordinates into the places of the contacts in the mesh cycle beside the even
+        rotation, rad, where `law` is a `MovingLaw`; else None.
     """
 
     mesh_jacobian: Array
@@ -92,6 +96,7 @@ class System:
     ring_lag: float = 0.0
     rubbing: "FlankRubbing | None" = None
     coupling: Coupling | None = None
+    phase_shifts: Array | None = None
 
     @property
     def size(self) -> int:
@@ -104,6 +109,27 @@ class System:
         bearing with clearance.
         """
         return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
+
+    def contact_forces(self, cycles: Array, beyond: Array, phase_shifts: Array | None = None) -> Array:
+        """Return the elastic forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, contacts) array
+            Compression of the contacts, m.
+        phase_shifts : (..., K, contacts) array or None
+            Their places in the mesh cycle beside the even rotation, rad, where the system has `phase_shifts`.
+
+        Returns
+        -------
+        (..., K, contacts) array
+            N.
+        """
+        if isinstance(self.law, MovingLaw) and phase_shifts is not None:
+            return self.law.energy(cycles, beyond, phase_shifts, (1, 0))
+        return self.law.force(cycles, beyond)
 
     @property
     def pairs(self) -> int:
@@ -142,6 +168,10 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         Equations of motion.
     """
     contacts, rings = mesh_contacts(machine), machine.linear.rings
+    law, phase_shifts = contacts.law, None
+    if machine.has_phase_shifts:
+        law = moving_law(law, len(reduction.mesh_jacobian))
+        phase_shifts = machine.phase_rows @ reduction.basis
     zeros = 3 * rings.body.size * [0.0]
     error, error_kind = _kinds((*contacts.error, *len(zeros) * [NO_ERROR]))
     load = np.zeros((reduction.omega_squared.size, 2, 1))
@@ -153,7 +183,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         mesh_damping=np.append(contacts.damping, zeros),
         lower=np.append(contacts.lower, np.tile([0.0, 0.0, -np.inf], rings.body.size)),
         upper=np.append(contacts.upper, zeros),
-        law=contacts.law,
+        law=law,
         error=error,
         error_kind=error_kind,
         load=load,
@@ -166,6 +196,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
         ring_lag=machine.linear.bearing_damping,
         coupling=reduction.coupling and reduction.coupling.per_speed(machine.layout.pinion_teeth),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduction),
+        phase_shifts=phase_shifts,
     )
 
 

@@ -51,14 +51,19 @@ def each_deflection(system: System, coordinates: Array, per_period: int) -> Arra
     Returns
     -------
     (K, contacts) array
-        Deflections, m.
+        Deflections, m; where the system has `phase_shifts`, those of the contacts follow as columns, rad.
     """
     contacts = system.contacts
     # Period by period: one large product would start threads, which then wait at full speed.
     by_period = coordinates.reshape(-1, per_period, coordinates.shape[1])
     deflections = by_period @ system.mesh_jacobian[:contacts].T
     deflections -= errors_of_period(system, per_period)
-    return deflections.reshape(len(coordinates), -1)
+    deflections = deflections.reshape(len(coordinates), -1)
+    return (
+        deflections
+        if system.phase_shifts is None
+        else np.concatenate([deflections, coordinates @ system.phase_shifts.T], axis=1)
+    )
 
 
 def errors_of_period(system: System, per_period: int) -> Array:
@@ -109,9 +114,10 @@ def by_mesh(system: System, contact_deflections: Array) -> Array:
     (K, meshes) array
         Deflections, m.
     """
+    contacts = system.contacts
     if not system.two_flanks:
-        return contact_deflections
-    drive, back = np.split(contact_deflections - system.upper[: system.contacts], 2, axis=1)
+        return contact_deflections[:, :contacts]
+    drive, back = np.split(contact_deflections[:, :contacts] - system.upper[:contacts], 2, axis=1)
     return 0.5 * (drive - back)
 
 
@@ -143,8 +149,10 @@ def _transmitted(system: System, contact_deflections: Array, cycles: Array) -> A
     mesh cycles.
     """
     contacts = system.contacts
-    beyond = beyond_edges(contact_deflections, system.lower[:contacts], system.upper[:contacts])
-    forces = system.law.force(cycles, beyond)
+    deflections = contact_deflections[..., :contacts]
+    beyond = beyond_edges(deflections, system.lower[:contacts], system.upper[:contacts])
+    phase_shifts = None if system.phase_shifts is None else contact_deflections[..., contacts:]
+    forces = system.contact_forces(cycles, beyond, phase_shifts)
     if not system.two_flanks:
         return forces
     drive, back = np.split(forces, 2, axis=-1)
@@ -208,7 +216,8 @@ def past_law(system: System, contact_deflections: Array) -> Array:
     """
     contacts = system.contacts
     past = past_levels(
-        system.law, beyond_edges(contact_deflections, system.lower[:contacts], system.upper[:contacts])
+        system.law,
+        beyond_edges(contact_deflections[:, :contacts], system.lower[:contacts], system.upper[:contacts]),
     )
     return past.reshape(2, -1).max(axis=0) if system.two_flanks else past
 
@@ -234,6 +243,7 @@ def mesh_fractions(system: System, fractions: Array, contact_deflections: Array)
         Fraction of the time open, on the drive flank, on the back flank.
     """
     lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
+    contact_deflections = contact_deflections[:, : system.contacts]
     contact_fractions = fractions[1] if system.two_flanks else 1.0 - fractions[0]
     deepest = np.maximum(contact_deflections.max(axis=0) - upper, lower - contact_deflections.min(axis=0))
     never = (upper > lower) & _never_pressed(deepest, contact_fractions, len(contact_deflections))

@@ -97,7 +97,9 @@ class ContactResult(Result):
         Columns: torque_n_m, position, ste_um, unloaded_ste_um, k_average_n_per_m, k_local_n_per_m,
         pairs_in_contact, load_share_pair_m2, load_share_pair_m1, load_share_pair_0, load_share_pair_p1,
         load_share_pair_p2, pressure_mpa, pressure_error_mpa, tip_line_load_n_per_mm, tip_length_mm,
-        fillet_share, interference_um, kkt_residual, torque_residual.
+        fillet_share, interference_um, kkt_residual, torque_residual; for teeth other than spur ones the
+        force and moment of the pinion on the gear (force_x_n to moment_z_n_m) and pinion_axial_n, as in
+        `by_flank`.
 
         Returns
         -------

@@ -97,10 +97,11 @@ class GearBodiesResult(Result):
         return self.content["crossings"].copy()
 
     def compliance(self) -> pd.DataFrame:
-        """One row a gear and order of nodal diameters: motions below a mesh, axial and round the axis,
-        by unit forces there.
+        """One row a gear and order of nodal diameters: motions below a mesh, axial, round the axis and
+        radial, by unit forces there.
 
-        Columns: gear, order, axial_m_per_n, round_m_per_n, axial_round_m_per_n.
+        Columns: gear, order, axial_m_per_n, round_m_per_n, axial_round_m_per_n, radial_m_per_n,
+        axial_radial_m_per_n, round_radial_m_per_n.
 
         Returns
         -------

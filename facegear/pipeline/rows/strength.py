@@ -82,7 +82,7 @@ LOAD_ROWS = (
         title="Where the load of every bin of the duty cycle puts the teeth",
         machine="inputs",
         needs={**MACHINE, "strength": "strength"},
-        section="strength",
+        section="strength.pinion",
         upstream={"surface": From("pose_surface", "surface"), **MESHES, **BODIES},
         files={
             "duty_poses": File(
@@ -186,7 +186,7 @@ ROWS = (
         module="strength",
         title="Safety and life of the tooth pair",
         needs={**PAIR, "strength": "strength", **GEARS},
-        section="strength",
+        section="strength.pinion",
         upstream={
             **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=machine_conditions.machine_loads),

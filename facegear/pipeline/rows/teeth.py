@@ -100,6 +100,12 @@ ROWS = (
         upstream=FLANKS,
         files={
             "ltca": File("contact/ltca.csv", "facegear.contact.pattern:LTCA_FINITE"),
+            "ltca_by_flank": File(
+                "contact/ltca_by_flank.csv",
+                ("torque_n_m", "position", "interference_um"),
+                text=("gear", "flank"),
+                may_be_empty=True,
+            ),
             "by_torque": File(
                 "contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")
             ),
@@ -125,7 +131,10 @@ ROWS = (
         name="stiffness",
         title="Mesh stiffness",
         needs={"mesh_stiffness": "mesh_stiffness"},
-        upstream={"ltca": From("contact", "ltca", when=conditions.computed_stiffness)},
+        upstream={
+            "ltca": From("contact", "ltca", when=conditions.computed_stiffness),
+            "flanks": From("contact", "ltca_by_flank", when=conditions.computed_stiffness),
+        },
         files={
             "tvms": File("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
             "harmonics": File(

@@ -75,7 +75,7 @@ def bearing_life(inputs: MachineInputs, speed_rpm: float, strength: Strength | N
     bins = []
     for number, load in enumerate(() if strength is None else strength.duty, start=1):
         rated_torque = load.torque_n_m * (1.0 if strength is None else strength.application_factor)
-        at = equilibrium(inputs.at_torque(rated_torque), rated_torque)
+        at = equilibrium(inputs.at_torque(rated_torque, load.speed_rpm), rated_torque)
         bins.append(RatedLoad(str(number), rated_torque, load.speed_rpm, load.hours, at))
     section = None if strength is None else strength.bearings
     lubrication = None

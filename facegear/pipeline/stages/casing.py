@@ -22,10 +22,10 @@ from facegear.pipeline.outcome import Outcome
 from facegear.schema.casing import CasingSection
 from facegear.ties import first_largest_row
 
+DOUBT = "half of the highest mode with seats and feet held: raise transmission.casing.modes"
+"""Words of a summary on modes and vibration above the frequency up to which a reduced casing holds."""
 SPEEDS = 121
 """Number of speeds at which the vibration of the casing is computed."""
-VALID = 0.5
-"""Part of the highest mode with seats held up to which a reduced casing vibrates as the whole one does."""
 
 
 def casing(section: CasingSection) -> Outcome:
@@ -53,7 +53,7 @@ def casing(section: CasingSection) -> Outcome:
     if len(mounted.own_frequencies):
         summary += f", first mode on its feet at {mounted.own_frequencies[0]:.1f} Hz"
     if mounted.modes:
-        summary += f"; valid up to {VALID * mounted.frequencies[-1]:.0f} Hz"
+        summary += f"; valid up to {mounted.valid_up_to:.0f} Hz"
     content = {"seats": seat_table(mounted), "modes": modes, "reduced": mounted.to_arrays()}
     return Outcome(content, summary)
 
@@ -104,6 +104,9 @@ def casing_loads(machine: Machine, first_rpm: float, last_rpm: float) -> Outcome
         f"seats move by up to {seat['distance']:.4g} um ({seat['seat']}), the force of {mesh['mesh']} "
         f"changes by {mesh['change_percent']:.3g} %, {count_noun(of_casing.size, 'mode')} of the casing"
     )
+    if beyond := int((~modes["is_valid"]).sum()):
+        limit = f"{machine.casing.mounted.valid_up_to:.0f} Hz"
+        summary += f"; {count_noun(beyond, 'mode')} above {limit}, {DOUBT}"
     return Outcome(content, summary)
 
 
@@ -138,4 +141,6 @@ def casing_response(machine: Machine, first_rpm: float, last_rpm: float) -> Outc
         f"{loudest['sensor']} vibrates most, {loudest['acceleration_m_per_s2']:.4g} m/s2 at "
         f"{loudest['speed_rpm']:.0f} rpm and {loudest['order']:.0f} x mesh"
     )
+    if not loudest["is_valid"]:
+        summary += f"; above {machine.casing.mounted.valid_up_to:.0f} Hz, {DOUBT}"
     return Outcome({"sensors": table}, summary)

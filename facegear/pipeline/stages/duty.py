@@ -8,6 +8,7 @@ from facegear.build.machine import MachineInputs
 from facegear.build.plans import settings
 from facegear.errors import ConfigError
 from facegear.machine.poses.fixed_point import operating_pose
+from facegear.machine.poses.posed_flanks import flank_surfaces
 from facegear.machine.poses.surface import PoseSurface
 from facegear.number_format import count_noun
 from facegear.pipeline.outcome import Outcome
@@ -61,7 +62,7 @@ def duty_loads(
     integration = settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, load in enumerate(strength.duty, start=1):
-        machine = inputs.at_torque(load.torque_n_m).build()
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
         history = history_of(machine, load.speed_rpm, integration)
         key = (number, load.torque_n_m, load.speed_rpm)
         loads += [(*key, *row) for row in load_rows(history)]
@@ -127,17 +128,19 @@ def duty_poses(
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
     pose_surface, rows = PoseSurface.of_arrays(surface), []
     for number, load in enumerate(strength.duty, start=1):
-        machine = inputs.at_torque(load.torque_n_m).build()
-        result = operating_pose(machine, pose_surface)
-        for mesh, name in enumerate(machine.layout.mesh_names):
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
+        result, names = operating_pose(machine, pose_surface), machine.layout.mesh_names
+        surfaces = flank_surfaces(machine, pose_surface)
+        for mesh, name in enumerate(names):
             for back, flank in enumerate(FLANKS):
-                contact = contact_at(pose_surface.pair, result.poses.errors(mesh, bool(back)))
+                flank_surface = surfaces[mesh + len(names) * back]
+                contact = contact_at(flank_surface.pair, result.poses.errors(mesh, bool(back)))
                 carries = bool(back) == (result.forces[mesh] < 0.0)
                 rows.append(
                     (
                         *(number, load.torque_n_m, name, flank),
                         abs(result.forces[mesh]) if carries else 0.0,
-                        np.nan if contact is None else 1e3 * contact.y,
+                        np.nan if contact is None else 1e3 * contact.path,
                         np.degrees(result.angle[mesh]),
                         result.factor[mesh],
                     )

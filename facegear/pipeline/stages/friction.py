@@ -307,7 +307,7 @@ def _states(
         return
     for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
-        machine = inputs.at_torque(load.torque_n_m).build()
+        machine = inputs.at_torque(load.torque_n_m, load.speed_rpm).build()
         layout = machine.layout
         arm = np.where(rows["flank"] == "back", layout.back_arm, 1.0) * layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()

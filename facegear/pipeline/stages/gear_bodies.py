@@ -9,10 +9,12 @@ import pandas as pd
 from facegear.build.elastic_bodies import contact_patch, elastic_gears, fitted_shape
 from facegear.build.lumped_model import given_torques
 from facegear.build.machine_layout import layout
+from facegear.build.teeth_on_body import TeethOnBody, teeth_on_body
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
-from facegear.machine.layout import Layout
+from facegear.machine.elastic_coordinates import gear_forces
+from facegear.machine.layout import Layout, Side
 from facegear.machine.machine import Machine
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
@@ -80,7 +82,7 @@ def gear_bodies(
     reduced_arrays = [
         item
         for gear, section in sections.items()
-        for item in _reduce_body(bodies[gear], section, tooth_pair).arrays(gear).items()
+        for item in _reduce_body(gear, bodies[gear], section, tooth_pair).arrays(gear).items()
     ]
     content |= {"reduced": dict(reduced_arrays), "shapes": dict(shapes)}
     gives = _gives_way(content["bodies"], transmission, machine)
@@ -117,27 +119,31 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
     return f"; at {force:.4g} N a mesh gives {gives:.4g} um, more than its backlash of {backlash:.4g} um"
 
 
-def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
+def _reduce_body(gear: str, body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
     """Reduce a solved body to the matrices of its modes, with the patch on which teeth press and with
     its damping.
     """
-    return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
+    return reduced_body(body, contact_patch(section, tooth_pair, gear), *section.damping)
 
 
 def _solve_bodies(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
-    """Solve the finite element body of every gear, by gear name; gears with equal sections share one
-    solution.
+    """Solve the finite element body of every gear, by gear name; gears with equal sections and equal teeth
+    share one solution.
     """
-    bodies: dict[BodySection, SolvedBody] = {}
-    for section in sections.values():
-        if section not in bodies:
-            bodies[section] = solve_body(
-                fitted_shape(section, tooth_pair),
+    body_keys = {
+        gear: (section, teeth_on_body(tooth_pair, gear), gear if tooth_pair.offset_mm else None)
+        for gear, section in sections.items()
+    }
+    bodies: dict[tuple[BodySection, TeethOnBody, str | None], SolvedBody] = {}
+    for gear, section in sections.items():
+        if body_keys[gear] not in bodies:
+            bodies[body_keys[gear]] = solve_body(
+                fitted_shape(section, tooth_pair, gear),
                 section.max_frequency_hz,
                 section.nodal_diameters,
                 tooth_pair.face_gear_teeth,
             )
-    return {gear: bodies[section] for gear, section in sections.items()}
+    return {gear: bodies[body_keys[gear]] for gear in sections}
 
 
 def _parts(
@@ -153,14 +159,14 @@ def _parts(
     `speeds_rpm` holds the pinion speed at which the waves of modes are given, and the last one for
     crossings with mesh harmonics.
     """
-    patch = contact_patch(section, tooth_pair)
+    patch = contact_patch(section, tooth_pair, gear)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speeds_rpm[0] / ratio / body_tables.RPM
-    sign = next(member.sign for member in machine.gears if member.side == gear)
+    number = [member.side for member in machine.gears].index(Side(gear))
+    forces = gear_forces(machine, number)
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
-    angle = machine.pressure_angle
     return {
-        "bodies": body_tables.body_table(gear, body, patch, angle, machine.angles),
+        "bodies": body_tables.body_table(gear, body, patch, forces, machine.angles),
         "modes": body_tables.mode_table(
             gear, body, speed, tooth_pair.face_gear_teeth, ratio, section.damping
         ),
@@ -168,7 +174,7 @@ def _parts(
             gear, body, tooth_pair.face_gear_teeth, ratio, speeds_rpm[1], machine.angles
         ),
         "compliance": body_tables.compliance_table(gear, body, patch),
-        "influence": body_tables.influence_table(gear, body, patch, angle, sign, angles),
+        "influence": body_tables.influence_table(gear, body, patch, forces, angles),
     }
 
 

@@ -15,7 +15,7 @@ from facegear.contact.gear_flank import every_flank_from_arrays, flanks_of
 from facegear.machine.machine import Machine
 from facegear.machine.poses.fixed_point import OperatingPose, carrying_pairs
 from facegear.machine.poses.fixed_point import operating_pose as fixed_point
-from facegear.machine.poses.posed_flanks import nominal_contact
+from facegear.machine.poses.posed_flanks import flank_surfaces, nominal_contact
 from facegear.machine.poses.surface import PoseSurface
 from facegear.pipeline.outcome import Outcome
 from facegear.quantities import BODIES
@@ -91,17 +91,21 @@ def posed_stress(
     ]
     flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     arrays: dict[str, AnyArray] = {}
-    tables = []
+    tables, names = [], machine.layout.mesh_names
+    assembled_contacts = flank_contacts(stress, by_flank)
     for number, posed_contact in enumerate(
         met_contacts(design, pair(tooth_pair).materials, flanks, plan, requests)
     ):
+        mesh = int(np.argmax(numbers == number))
+        loaded_flank = FLANKS[int(result.forces[mesh] < 0.0)]
+        assembled_roots = contacts_of(names[mesh], assembled_contacts, gears)[loaded_flank].roots
         roots: dict[str, RootStress] = {
-            body: replace(passing(body, flank, posed_contact.loads), error=stress[f"{body}_error"])
+            body: replace(passing(body, flank, posed_contact.loads), error=assembled_roots[body].error)
             for body, flank in zip(BODIES, flanks_of(pairs.designs[number], design, flanks), strict=True)
         }
         arrays |= root_arrays_of(number, roots)
         tables.append(posed_contact.by_torque.assign(contact=number))
-    every, names = pd.concat(tables, ignore_index=True), machine.layout.mesh_names
+    every = pd.concat(tables, ignore_index=True)
     contact_poses = _contact_poses(machine, pose_surface, result)
     by_torque = pd.concat(
         [
@@ -112,9 +116,7 @@ def posed_stress(
     )
     arrays |= {"mesh": np.array(names), "contact": numbers, "carrying": (result.forces < 0.0).astype(int)}
     contacts = solved_contacts(arrays, by_torque)
-    by_mesh = _by_mesh(
-        result, names, [contacts[number] for number in numbers], flank_contacts(stress, by_flank), gears
-    )
+    by_mesh = _by_mesh(result, names, [contacts[number] for number in numbers], assembled_contacts, gears)
     first = ["mesh", "flank", "contact"]
     by_torque = by_torque[[*first, *(name for name in by_torque.columns if name not in first)]]
     content = {"by_mesh": by_mesh, "by_torque": by_torque, "contacts": {**arrays, **contact_poses}}
@@ -130,10 +132,13 @@ def _contact_poses(machine: Any, surface: PoseSurface, result: OperatingPose) ->
     assembled.
     """
     back = result.forces < 0.0
-    paths, rest = [], []
+    paths, rest, surfaces = [], [], flank_surfaces(machine, surface)
     for mesh in range(back.size):
-        poses = (contact_at(surface.pair, result.poses.errors(mesh, side)) for side in (False, True))
-        paths.append([np.nan if pose is None else pose.y for pose in poses])
+        poses = (
+            contact_at(surfaces[mesh + back.size * side].pair, result.poses.errors(mesh, side))
+            for side in (False, True)
+        )
+        paths.append([np.nan if pose is None else pose.path for pose in poses])
         rest.append(nominal_contact(machine, surface, mesh, not back[mesh]))
     nominal_contacts = np.array(rest)
     return {

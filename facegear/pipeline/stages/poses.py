@@ -1,6 +1,6 @@
 """Stages of poses: contact over pose, and where forces put the teeth."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 import numpy as np
@@ -8,10 +8,17 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays
 from facegear.build.plans import contact_plan
-from facegear.build.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import Pair, ToothPair, pair
 from facegear.contact.analysis import PosedContact, met_contacts, posed_contacts
-from facegear.contact.gear_flank import GearFlank, every_flank_from_arrays, flanks_of, from_arrays
+from facegear.contact.gear_flank import (
+    GearFlank,
+    PairFlanks,
+    every_flank_from_arrays,
+    flanks_of,
+    gears_of,
+)
 from facegear.contact.nodal_loads import REACTION_COLUMNS
+from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import pattern_margins
 from facegear.errors import FacegearError
 from facegear.machine.machine import Machine
@@ -26,6 +33,7 @@ from facegear.machine.poses.tables import (
     hardest_mesh,
     leaving_text,
     load_tables,
+    loaded_surfaces,
     margin_text,
     mesh_table,
     with_margins,
@@ -40,6 +48,7 @@ from facegear.strength.passage import passing
 from facegear.strength.root_stress import largest_tension
 from facegear.teeth.conjugate import PairNumbers, contact_at, without_modifications
 from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import FLANKS, GEARS, nominal_teeth, pair_at
 
 
 def pose_surface(
@@ -55,7 +64,7 @@ def pose_surface(
     A pose of a mesh comes down to two numbers: the error of the shaft angle, and the path, which is the
     place of the unloaded contact along the pinion. The nodes are a grid of angles, paths and torques.
     At each angle and path the contact is solved at all torques over a pitch; later stages interpolate
-    between the nodes.
+    between the nodes. Flanks on other bodies than the upper gear's drive flank have surfaces of their own.
 
     Parameters
     ----------
@@ -76,7 +85,8 @@ def pose_surface(
     -------
     Outcome
         Arrays `surface` (`PoseSurface.arrays`, SI units), table `nodes` (see `node_table`) and table
-        `errors` (see `error_table`).
+        `errors` (see `error_table`); where there are several surfaces, with columns `gear` and `flank` of the
+        first flank that each is of.
 
     Raises
     ------
@@ -86,27 +96,101 @@ def pose_surface(
         Where teeth interfere.
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
-    design, flanks = teeth.design, (from_arrays(pinion), from_arrays(face_gear))
-    numbers = PairNumbers.of_design(design)
+    flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
+    pairs, numbers = surface_pairs(teeth.design, gears_of(teeth.design, flanks))
+    surfaces, nodes, errors = [], [], []
+    for design in pairs.values():
+        flank_surface, offsets = _solve_surface(teeth, design, flanks, plan, torque_n_m, tilting)
+        surfaces.append(flank_surface)
+        nodes.append(node_table(flank_surface.nodes, flank_surface.values, offsets))
+        errors.append(error_table(flank_surface))
+    first, *further = surfaces
+    surface = replace(first, further=tuple(further), flank_numbers=numbers)
+    worst = max(table[table["quantity"] == STIFFNESS]["largest"].max() for table in errors)
+    poses = sum(one_surface.nodes.angles.size * one_surface.nodes.paths.size for one_surface in surfaces)
+    lowest = min(one_surface.nodes.paths[0] for one_surface in surfaces)
+    highest = max(one_surface.nodes.paths[-1] for one_surface in surfaces)
+    summary = (
+        f"{count_noun(poses, 'pose')}, paths {1e3 * lowest:.1f} to {1e3 * highest:.1f} mm, up to "
+        f"{first.nodes.torques[-1]:g} N m; stiffness misses a node that is left out by at most "
+        f"{100 * worst:.2g} %"
+    )
+    content = {
+        "surface": surface.arrays,
+        "nodes": _by_flank(list(pairs), nodes),
+        "errors": _by_flank(list(pairs), errors),
+    }
+    return Outcome(content, summary)
+
+
+def surface_pairs(
+    design: PairDesign, gears: Sequence[str]
+) -> tuple[dict[tuple[str, str], PairDesign], tuple[tuple[int, int], ...]]:
+    """Return the pairs that have a pose surface of their own, and which of them each flank belongs to.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gears : Sequence[str]
+        Gears that there are, of `upper` and `lower`; a missing one has the surfaces of the other.
+
+    Returns
+    -------
+    tuple of dict and tuple
+        Pairs by gear and flank, assembled as the first flank that needs them, that of the upper gear's drive
+        flank first; their numbers for drive and back flank of both of GEARS.
+    """
+    pairs: dict[tuple[str, str], PairDesign] = {}
+    number_of_teeth: dict[PairDesign, int] = {}
+    numbers = []
+    for gear in GEARS:
+        present = gear if gear in gears else gears[0]
+        for flank in FLANKS:
+            pair_of_flank = pair_at(design, present, flank)
+            teeth = nominal_teeth(pair_of_flank)
+            if teeth not in number_of_teeth:
+                number_of_teeth[teeth] = len(pairs)
+                pairs[present, flank] = pair_of_flank
+            numbers.append(number_of_teeth[teeth])
+    return pairs, ((numbers[0], numbers[1]), (numbers[2], numbers[3]))
+
+
+def _solve_surface(
+    teeth: Pair,
+    design: PairDesign,
+    flanks: Sequence[PairFlanks],
+    plan: ContactPlan,
+    torque: float,
+    tilting: bool,
+) -> tuple[PoseSurface, list[float]]:
+    """Return the surface of the drive flanks of a pair, and the offset of each pose, m.
+
+    flanks: of `placement.nominal_pairs` of `teeth.design`; torque: reference torque, N m; tilting: whether
+    bodies may tilt.
+    """
+    pair_flanks, numbers = flanks_of(design, teeth.design, flanks), PairNumbers.of_design(design)
     nodes = surface_nodes(numbers, design.assembly, plan.torques[-1], tilting)
     plan = replace(plan, torques=tuple(nodes.torques.tolist()))
-    assemblies = nodes.assemblies(numbers)
+    assemblies = nodes.assemblies(numbers, design.assembly.pinion_axial)
     rows = [
-        quantities(design, flanks, posed_contact)
-        for posed_contact in posed_contacts(design, teeth.materials, flanks, plan, assemblies)
+        quantities(design, pair_flanks, posed_contact)
+        for posed_contact in posed_contacts(design, teeth.materials, pair_flanks, plan, assemblies)
     ]
     shape = len(nodes.angles), len(nodes.paths), len(nodes.torques)
     values = {name: np.array([row[name] for row in rows]).reshape(shape) for name in rows[0]}
-    surface = PoseSurface(numbers, design.assembly, nodes, values, torque_n_m)
-    errors = error_table(surface)
-    worst = errors[errors["quantity"] == STIFFNESS]["largest"].max()
-    summary = (
-        f"{count_noun(len(assemblies), 'pose')}, paths {1e3 * nodes.paths[0]:.1f} to "
-        f"{1e3 * nodes.paths[-1]:.1f} mm, up to "
-        f"{nodes.torques[-1]:g} N m; stiffness misses a node that is left out by at most {100 * worst:.2g} %"
-    )
-    table = node_table(nodes, values, [errors.offset for errors in assemblies])
-    return Outcome({"surface": surface.arrays, "nodes": table, "errors": errors}, summary)
+    surface = PoseSurface(numbers, design.assembly, nodes, values, torque)
+    return surface, [errors.offset for errors in assemblies]
+
+
+def _by_flank(keys: list[tuple[str, str]], tables: list[pd.DataFrame]) -> pd.DataFrame:
+    """Join the tables of several surfaces, with columns `gear` and `flank`; one alone stays as it is."""
+    if len(tables) == 1:
+        return tables[0]
+    parts = []
+    for (gear, flank), table in zip(keys, tables, strict=True):
+        parts.append(table.assign(gear=gear, flank=flank)[["gear", "flank", *table.columns]])
+    return pd.concat(parts, ignore_index=True)
 
 
 def quantities(
@@ -294,7 +378,7 @@ def operating_pose(
         pose_surface,
         result,
         worst,
-        [_direct(design, own_flanks, posed_contact) for posed_contact in contacts],
+        [_direct(worst_design, own_flanks, posed_contact) for posed_contact in contacts],
     )
     margins = [
         pattern_margins(posed_contact.pressure, design_at_pose, at)
@@ -336,7 +420,8 @@ def _check(
     sums of the touching loads.
     """
     at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
-    at_pose = {name: surface.at(name, *at) for name in surface.values if name in direct[1]}
+    loaded_surface = loaded_surfaces(result, surface)[mesh]
+    at_pose = {name: loaded_surface.at(name, *at) for name in loaded_surface.values if name in direct[1]}
     at_pose |= dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True))
     rows = [
         (name, value, float(direct[1][name][0]), float(direct[0][name][0])) for name, value in at_pose.items()

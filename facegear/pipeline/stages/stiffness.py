@@ -11,7 +11,11 @@ from facegear.pipeline.outcome import Outcome
 from facegear.schema.stiffness import MeshStiffness
 
 
-def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -> Outcome:
+def stiffness(
+    mesh_stiffness: MeshStiffness,
+    ltca: pd.DataFrame | None = None,
+    flanks: pd.DataFrame | None = None,
+) -> Outcome:
     """Compute the mesh stiffness over a pitch, from the contact table or from the config's harmonics.
 
     Parameters
@@ -20,6 +24,8 @@ def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -
         Section `mesh_stiffness` of the config.
     ltca : pd.DataFrame or None
         Table `ltca` of stage contact; None where the config gives harmonics.
+    flanks : pd.DataFrame or None
+        Table `ltca_by_flank` of stage contact, of the flanks that have a stiffness of their own.
 
     Returns
     -------
@@ -34,7 +40,7 @@ def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -
         For a load outside those solved and for a k(t) that is not positive throughout.
     """
     request = stiffness_request(mesh_stiffness)
-    result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)
+    result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request, flanks)
     content = {
         "tvms": result.curve,
         "harmonics": result.harmonics,

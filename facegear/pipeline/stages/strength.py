@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays
-from facegear.build.lumped_model import stiffness_phases
+from facegear.build.lumped_model import stiffness_lags
 from facegear.build.machine import MachineInputs
 from facegear.build.strength import duty_bins, rating_request
 from facegear.build.tooth_numbers import ToothNumbers
@@ -26,7 +26,13 @@ from facegear.schema.contact import Contact, Mesh
 from facegear.schema.strength import Strength
 from facegear.schema.transmission import Transmission
 from facegear.strength.dynamic_stress import branch_forces, dynamic_stress_table, stress_table, swept_forces
-from facegear.strength.flank_contacts import flank_contacts, met_by, worst_pressure, worst_root
+from facegear.strength.flank_contacts import (
+    flank_contacts,
+    met_by,
+    normal_arms,
+    worst_contact,
+    worst_pressure,
+)
 from facegear.strength.passage import coarser_roots, face_error, passing
 from facegear.strength.posed_contacts import duty_contact_poses, mesh_contacts, posed_of
 from facegear.strength.rating import FailureRating, rate
@@ -39,9 +45,8 @@ from facegear.strength.rating_tables import (
 )
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
-from facegear.teeth.analysis import section_contact_ratio
 from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import distinct_pairs, nominal_teeth
+from facegear.teeth.placement import FLANKS, GEARS, distinct_pairs, nominal_pairs, nominal_teeth, pair_at
 from facegear.ties import first_largest_row
 
 
@@ -238,18 +243,19 @@ def dynamic_root_stress(
         Table `dynamic_stress`, a row a mesh: largest stress over a passage with its mean force, the
         largest while running, and a bound with its largest force; see `DynamicStressResult`.
     """
-    phases = stiffness_phases(transmission, teeth)
+    lags = stiffness_lags(transmission, teeth).reshape(len(FLANKS), -1)
     forces, positions, whole = {}, {}, shows_a_period(response, summary)
     for number, (mesh, rows) in enumerate(response.groupby("mesh", sort=False)):
         cycles, force = rows["mesh_cycle"].to_numpy(), rows["elastic_force_n"].to_numpy()
         force = finer(force, FINER, whole)
         between = (cycles[1] - cycles[0]) * np.arange(FINER) / FINER
-        drive, back = flank_places(phases[[number]], (cycles[:, None] + between).ravel()).T
+        drive, back = flank_places(lags[:, number], (cycles[:, None] + between).ravel()).T
         forces[str(mesh)], positions[str(mesh)] = force, np.where(force < 0.0, back, drive)
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     contacts_by_mesh = mesh_contacts(forces, contacts, gears, at_pose)
-    table = dynamic_stress_table(forces, positions, pair(tooth_pair).design.normal_arm, contacts_by_mesh)
+    arms = normal_arms(pair(tooth_pair).design)
+    table = dynamic_stress_table(forces, positions, arms, contacts_by_mesh)
     worst = first_largest_row(table, "face_gear_running_mpa")
     summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
     return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")
@@ -313,10 +319,9 @@ def stress_over_speed(
         forces = pd.concat([forces, forces_of_branches], ignore_index=True)
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, inputs.poses)
-    by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
-    contacts_by_mesh = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
-    radius = pair(tooth_pair).design.normal_arm
-    table = stress_table(forces, at_standstill, radius, contacts_by_mesh)
+    contacts_by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
+    arms = normal_arms(pair(tooth_pair).design)
+    table = stress_table(forces, at_standstill, arms, contacts_by_mesh)
     worst = first_largest_row(table, "largest_force_n")
     position = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
     stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"
@@ -390,21 +395,31 @@ def rating(
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed_contacts, posed_by_torque, poses)
     stands = None if duty_poses is None else duty_contact_poses(duty_poses)
+    has_other_bodies = len(nominal_pairs(design, gears)) > 1
     ratings: list[FailureRating] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
-        of_loads = None
-        if at_pose is None or stands is None:
-            flank_contacts_met = [contacts[flank] for flank in met_by(duty, gears)]
-        else:
-            flank_contacts_met = [at_pose.contacts[mesh][flank] for mesh, flank in at_pose.met_by(duty)]
-            of_loads = at_pose.stresses(duty, stands)
-        roots, pressure = (
-            {duty.gear: worst_root(duty, flank_contacts_met)},
-            worst_pressure(flank_contacts_met),
+        of_loads, by_flank_met = None, contacts
+        contacts_met = met_by(duty, gears)
+        if at_pose is not None and stands is not None:
+            contacts_met, of_loads = at_pose.met_by(duty), at_pose.stresses(duty, stands)
+            by_flank_met = {
+                (mesh, flank): at_pose.contacts[mesh][flank] for mesh, _ in contacts_met for flank in FLANKS
+            }
+        worst_at = worst_contact(duty, {at: by_flank_met[at] for at in contacts_met})
+        roots = {duty.gear: by_flank_met[worst_at].roots[duty.gear]}
+        pressure = worst_pressure([by_flank_met[at] for at in contacts_met])
+        # flanks on other bodies bend teeth back in another way than the mirror image of the rated contact
+        (other_flank,) = set(FLANKS) - {worst_at[1]}
+        opposite = [by_flank_met[met_at, other_flank].roots[duty.gear] for met_at, _ in contacts_met]
+        ways = rate(
+            pair_at(design, GEARS[0], worst_at[1]),
+            roots,
+            pressure,
+            replace(request, duty=(duty,)),
+            of_loads,
+            opposite if has_other_bodies else (),
         )
-        alone = replace(request, duty=(duty,))
-        ways = rate(design, section_contact_ratio(design), roots, pressure, alone, of_loads)
         ratings += ways
         for name, table in {
             "safety": safety_table(ways, pressure),

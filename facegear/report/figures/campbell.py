@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.motion.plan import JumpKind
-from facegear.report.figures.colours import BLACK, BLUE, GREEN, ORANGE, grey
+from facegear.report.figures.colours import BLACK, BLUE, GREEN, ORANGE, PURPLE, grey
 from facegear.report.figures.description import Axis, Figure, Panel, apart
 from facegear.report.figures.marks import ColourScale, Curve, Look, Map, Text
 
@@ -15,7 +15,12 @@ ORDER_LINES = (1.0, 2.0, 3.0)
 """Multiples of the mesh frequency that are always drawn, beside those of the marks."""
 
 
-CLASS_COLOURS = {"pinion": BLUE, "face gear": ORANGE, "pinion coupled face gear": GREEN}
+CLASS_COLOURS = {
+    "pinion": BLUE,
+    "face gear": ORANGE,
+    "pinion coupled face gear": GREEN,
+    "casing": PURPLE,
+}
 """Colour of each class of modes."""
 
 

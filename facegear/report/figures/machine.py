@@ -218,8 +218,16 @@ def _kilo(newtons: float) -> str:
     return format_number(newtons / 1e3)
 
 
+PLAIN_MOTIONS = ("x", "y", "z", "θ")
+"""Motions of a body that neither tilts nor bends, in the order of the bars."""
+MOST_SHAPES = 12
+"""Kinds of modes that are drawn at most, a free choice: a casing has as many kinds as modes, whose 60 panels
+nobody reads."""
+
+
 def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
-    """Return the orders of the first modes of each kind: one mode, or all modes of one frequency.
+    """Return the orders of the first modes of each kind: one mode, or all modes of one frequency. Of more
+    than MOST_SHAPES kinds the lowest are taken.
 
     A kind is a class with the same symbols; rigid modes are left out. A simple mode is taken if there is one,
     as a single vector out of several modes of one frequency is arbitrary.
@@ -239,7 +247,7 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     for _, rows in elastic.groupby(["class", "symbols"], sort=False):
         first = rows.loc[rows["multiplicity"].idxmin()]
         modes.append(tuple(int(first["order"]) + i for i in range(int(first["multiplicity"]))))
-    return sorted(modes)
+    return sorted(modes)[:MOST_SHAPES]
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
@@ -288,17 +296,23 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
     """
     by_order = frequencies.set_index("order")
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
-    bodies = dofs["body"].drop_duplicates()
-    names = [(float(first) + 1.5, str(body)) for first, body in bodies.items()]
-    across = Axis("Degrees of freedom: x, y, z, θ of each body", "", ticks=names)
+    # Tilts and elastic motions stand behind those of all bodies in the table.
+    codes, bodies = pd.factorize(dofs["body"])
+    order = np.argsort(codes, kind="stable")
+    counts = np.bincount(codes)
+    edges = np.concatenate([[0], np.cumsum(counts)])
+    middles = 0.5 * (edges[:-1] + edges[1:] - 1.0)
+    names = [(float(middle), str(body)) for middle, body in zip(middles, bodies, strict=True)]
+    further = ", further motions" if counts.max() > len(PLAIN_MOTIONS) else ""
+    across = Axis(f"{', '.join(PLAIN_MOTIONS)}{further} of each body", "", ticks=names)
     panels = []
     for orders in typical_modes(frequencies):
         mode = by_order.loc[orders[0]]
-        heights = amplitudes(shapes, orders)
+        heights = amplitudes(shapes, orders)[order]
         marks: list[Bars | Line] = [
-            *(Line(edge - 0.5, colour=grey(0.8), width=0.6) for edge in bodies.index[1:]),
+            *(Line(float(edge) - 0.5, colour=grey(0.8), width=0.6) for edge in edges[1:-1]),
             Line(0.0, "y", colour=BLACK, width=0.6),
-            Bars(dofs.index.to_numpy(dtype=float), heights, colour=CLASS_COLOURS[mode["class"]]),
+            Bars(np.arange(len(dofs), dtype=float), heights, colour=CLASS_COLOURS[mode["class"]]),
         ]
         up = Axis("", "", low=-1.1 if len(orders) == 1 else 0.0, high=1.1)
         panels.append(Panel(across, up, marks, title=_title(orders, mode), height=0.85))

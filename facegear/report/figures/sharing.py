@@ -181,8 +181,8 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
 
 
 def bearing_figure(scan: pd.DataFrame) -> Figure:
-    """Draw K_gamma over the bearing stiffness of the inputs (top) and of the idlers (below), for both
-    kinematics.
+    """Draw K_gamma over the bearing stiffness of the inputs (top) and of the idlers (below), for each
+    kinematics of the table.
 
     Parameters
     ----------
@@ -202,6 +202,8 @@ def bearing_figure(scan: pd.DataFrame) -> Figure:
             for kinematics, line in CYCLE_LINES.items():
                 mask = (scan["varied"] == role) & (scan["kind"] == kind)
                 rows = scan[mask & (scan["kinematics"] == kinematics)]
+                if rows.empty:
+                    continue
                 name = f"Kᵧ of the {kind}, {kinematics}"
                 stiffness = 1e-6 * rows["stiffness_n_per_m"]
                 curves.append(Curve(stiffness, rows["k_gamma"], name, colour_of(number + 1), line))

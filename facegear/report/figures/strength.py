@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.number_format import format_number
+from facegear.number_format import begin_with_capital, format_number
 from facegear.report.figures.colours import BLUE, ORANGE, grey, shades
 from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import Curve, Line, LineStyle, Look, Span
@@ -197,7 +197,7 @@ def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
 
 def _subject(row: Any) -> str:
     """Return body, flank and method of `row`, a row of table `rating`, in words."""
-    body = BODIES.get(row.body, row.body.capitalize())
+    body = BODIES.get(row.body, begin_with_capital(row.body))
     return f"{body}, {row.flank} flank, {row.method}"
 
 

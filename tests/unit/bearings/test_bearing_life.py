@@ -11,12 +11,11 @@ from rolling_bearings import P1, P2, P3, TAPERED, public_cases
 
 from facegear.bearings.elements import BallBearing, RollerBearing
 from facegear.bearings.equilibrium import find_equilibrium
+from facegear.bearings.equivalent_load import LARGE_ANGLES, equivalent_load
 from facegear.bearings.life import (
-    ANGULAR_CONTACT,
     Lubrication,
     basic_life,
     edge_factors,
-    equivalent_load,
     life_factor,
     life_together,
     load_rating,
@@ -176,7 +175,7 @@ def test_equivalent_loads_of_pure_radial_loads_are_the_loads():
         assert equivalent_load(bearing, force)[0] == pytest.approx(500.0)
 
 
-@pytest.mark.parametrize(("degrees", "limit", "radial", "thrust"), ANGULAR_CONTACT)
+@pytest.mark.parametrize(("degrees", "radial", "thrust", "limit"), LARGE_ANGLES)
 def test_thrust_beyond_e_counts_by_the_printed_factors(degrees, limit, radial, thrust):
     bearing = replace(P2, contact_angle=np.radians(degrees))
     loads = np.array([[1000.0, 0.0, part * limit * 1000.0, 0.0, 0.0] for part in (0.99, 1.01, 3.0)])
@@ -193,11 +192,29 @@ def test_equivalent_loads_do_not_jump_where_thrust_begins_to_count():
         assert np.abs(np.diff(equivalent_load(bearing, loads))).max() < 0.012 * radial
 
 
-def test_small_contact_angles_have_no_equivalent_load_but_a_reference_life():
-    bearing = replace(P2, contact_angle=np.radians(15.0))
-    load = np.array([1000.0, 0.0, 3000.0, 0.0, 0.0])
-    assert np.isnan(equivalent_load(bearing, load))
-    assert reference_life(bearing, find_equilibrium(bearing, load).loads)[0] > 0.0
+@pytest.mark.parametrize(
+    ("degrees", "relative", "expected"),
+    [
+        (0.0, 1.03, 0.56 + 3.0 * 1.55),
+        (10.0, 0.345, 0.46 + 3.0 * 1.71),
+        (15.0, 0.345, 0.44 + 3.0 * 1.40),
+        (15.0, 9.0, 0.44 + 3.0 * 1.00),
+        (12.5, 0.345, 0.45 + 3.0 * 1.555),
+        (17.5, 0.345, 0.435 + 3.0 * 1.20),
+        (20.0, 0.345, 0.43 + 3.0 * 1.00),
+    ],
+)
+def test_small_contact_angles_have_factors_that_depend_on_the_thrust(degrees, relative, expected):
+    """They had no equivalent load. Values between rows and angles are those of linear interpolation."""
+    bearing = replace(P2, contact_angle=np.radians(degrees))
+    thrust = relative * bearing.elements * (1e3 * bearing.element_diameter) ** 2
+    load = thrust / 3.0 * np.array([1.0, 0.0, 3.0, 0.0, 0.0])
+    assert equivalent_load(bearing, load) == pytest.approx(expected * thrust / 3.0, rel=1e-12)
+
+
+def test_bearings_beyond_the_tables_have_no_equivalent_load_under_thrust():
+    bearing = replace(P2, contact_angle=np.radians(46.0))
+    assert np.isnan(equivalent_load(bearing, np.array([1000.0, 0.0, 3000.0, 0.0, 0.0])))
 
 
 @pytest.mark.parametrize("bearing", [P1, P3])

@@ -8,7 +8,9 @@ import pytest
 from references import against, agrees
 
 from facegear.harmonics import Harmonics
+from facegear.machine.casing_coordinates import casing_motion
 from facegear.machine.casing_response import ORDERS, mesh_excitations, sensor_accelerations
+from facegear.machine.casing_tables import frequency_table
 from facegear.machine.loaded_modes import machine_in_motion
 from facegear.machine.machine import Damping, OpenFlanks
 from facegear.machine.modes import ModeClass, modes_of, name_modes
@@ -16,9 +18,14 @@ from facegear.machine.shaft_orders import loaded_machine
 from facegear.machine.statics import equilibria, mean_equilibrium
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.pipeline.stages.casing import casing_loads, casing_response
+from facegear.report.chapter_tables import casing_tables
 from facegear.report.figures.casing import casing_figures, sensor_figures
+from facegear.report.warnings import grouped_warnings
 from tests.helpers.public_casing import mount_public
 from tests.helpers.seated_machines import STIFFNESS, make_small_layout, make_small_machine, place_on
+
+MACHINE_ALONE = {"mesh_stiffness": {"source": "harmonics"}, "transmission": {}}
+"""Parts of a config that warnings read."""
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +131,19 @@ def test_slow_meshes_move_the_sensors_as_statics_do(machine):
     )
 
 
-@pytest.mark.parametrize(("limit", "error"), [(1.0, 1e-2), (1.5, 2.5e-3), (2.0, 1e-3)])
+def test_slow_motions_of_the_casing_rest_where_all_of_them_do(machine):
+    """Gears tilt with their seats under the flanks, which the casing answers without any mode, too."""
+    in_motion = machine_in_motion(machine)
+    expected = mean_equilibrium(machine)
+    for limit in (0.0, in_motion.casing.frequency_limit):
+        slow = replace(in_motion, casing=replace(in_motion.casing, frequency_limit=limit))
+        found = mean_equilibrium(slow)
+        np.testing.assert_allclose(found.flank_forces, expected.flank_forces, atol=1e-6)
+        moved = casing_motion(slow.linear, found.displacements)
+        np.testing.assert_allclose(moved, casing_motion(machine.linear, expected.displacements), atol=1e-13)
+
+
+@pytest.mark.parametrize(("limit", "error"), [(0.85, 1e-2), (1.0, 1e-2), (1.5, 2.5e-3), (2.0, 1e-3)])
 def test_slow_modes_of_the_casing_converge_to_all(machine, limit, error, monkeypatch):
     amplitudes, speed = [], 3000.0
     for factor in (limit, 1e6):
@@ -153,6 +172,46 @@ def test_the_sensor_table_holds_excited_orders_alone(machine):
     assert len(table) % (2 * 3) == 0
     assert (table["acceleration_m_per_s2"] > 0.0).all()
     assert ORDERS >= 2
+
+
+def test_modes_and_vibration_above_half_of_the_highest_held_mode_get_a_warning(loads, machine):
+    own = frequency_table(machine.casing.mounted)
+    highest = own.loc[own["held"] == "feet and seats", "frequency_hz"].max()
+    beyond = int((loads["modes"]["frequency_hz"] > 0.5 * highest).sum())
+    # 6000 rpm are 2000 Hz of the mesh: orders above the second lie beyond 5436 Hz
+    sensors = casing_response(machine, 5999.0, 6000.0).content["sensors"]
+    high = sensors["order"] * 2000.0 > 0.5 * highest
+    assert (sensors["is_valid"] == ~high).all() and 0 < beyond < len(loads["modes"])
+    tables = {"casing_modes": own, "casing_machine_modes": loads["modes"], "casing_sensors": sensors}
+    lines = dict(grouped_warnings(MACHINE_ALONE, tables, None))["Casing"]
+    assert lines[0].startswith(f"{beyond} of {len(loads['modes'])} modes of the machine lie above half of")
+    assert f"{highest:.0f} Hz" in lines[0] and lines[0].endswith("raise transmission.casing.modes.")
+    assert [line.split(" of ")[0] for line in lines[1:]] == [str(count) for count in [high.sum()] if count]
+    few = {**tables, "casing_machine_modes": loads["modes"].head(3), "casing_sensors": sensors[~high]}
+    assert grouped_warnings(MACHINE_ALONE, few, None) == []
+
+
+def test_the_summary_counts_modes_above_half_of_the_highest_held_mode(machine):
+    limit = machine.casing.mounted.valid_up_to
+    assert f"above {limit:.0f} Hz, half of the highest mode" in casing_loads(machine, 500.0, 6000.0).summary
+
+
+def test_the_report_shows_sharing_seats_feet_modes_and_sensors(loads, machine):
+    """They were files and figures alone."""
+    sensors = casing_response(machine, 500.0, 3000.0).content["sensors"]
+    tables = {
+        "casing_load_sharing": loads["sharing"],
+        "casing_seat_motions": loads["seats"],
+        "casing_feet": loads["feet"],
+        "casing_machine_modes": loads["modes"],
+        "casing_sensors": sensors,
+    }
+    shown = casing_tables(tables)
+    assert [len(table.frame) for table in shown[:4]] == [len(tables[name]) for name in list(tables)[:4]]
+    largest = shown[-1].frame.set_index(["sensor", "order"])["acceleration_m_per_s2"]
+    expected = sensors.groupby(["sensor", "order"])["acceleration_m_per_s2"].max()
+    assert np.allclose(largest.sort_index(), expected.sort_index())
+    assert casing_tables({}) == []
 
 
 def test_figures_draw_what_the_tables_hold(loads, machine):

@@ -9,15 +9,17 @@ from references import against, agrees
 from facegear.bearings.life import reference_life
 from facegear.bearings.response import element_loads
 from facegear.bearings.shaft import RollingShaft, Support, find_shaft_equilibrium
+from facegear.harmonics import Harmonics
 from facegear.machine.casing import Casing
 from facegear.machine.casing_tables import foot_table
 from facegear.machine.drive_line import DriveLine
 from facegear.machine.layout import Body
-from facegear.machine.loaded_modes import loaded_modes
+from facegear.machine.loaded_modes import MOTION_LIMIT, loaded_modes
 from facegear.machine.machine import Damping, OpenFlanks
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.rolling_seats import rolling_seat
-from facegear.machine.statics import equilibria, mean_equilibrium
+from facegear.machine.statics import bearing_forces, equilibria, mean_equilibrium
+from facegear.motion.bearing_forces import bearing_history, shaft_bearing_history
 from facegear.motion.steady_state.simulate import build_model, simulate
 from facegear.parts.shafts import Elasticity, Segment
 from tests.helpers.public_casing import mount_public
@@ -46,7 +48,7 @@ MODES = {
 LIVES = {"fixed": (61.8026, 3957.77), "casing": (102.872, 6769.38)}
 
 
-def make_machine(seat, names=("p0", "p0"), factor=1.0):
+def make_machine(seat, names=("p0", "p0"), factor=1.0, modes=0):
     layout = make_small_layout()
     state = find_shaft_equilibrium(SHAFT, np.array([-14e3, -7e3, 0.0, 0.0, 0.0]))
     body = Body(1.2, 6e-4, (3e8, 3e8, 1e8))
@@ -54,7 +56,7 @@ def make_machine(seat, names=("p0", "p0"), factor=1.0):
     line = DriveLine(layout, {0: rolling_seat(SHAFT, state, None)}, {})
     casing = None
     if seat == "casing":
-        simple = place_on(mount_public(0, factor), layout)
+        simple = place_on(mount_public(modes, factor), layout)
         along = layout.mesh_radius + np.array([0.01, 0.12]) - SHAFT.pinion
         seats = {**simple.bearing_seats, 0: names}
         casing = Casing(layout, simple.mounted, seats, {}, {0: along})
@@ -139,6 +141,38 @@ def test_one_bearing_on_the_casing_and_one_on_the_ground():
     np.testing.assert_allclose(feet.loc["out of balance"].astype(float), 0.0, atol=1e-5)
 
 
+@pytest.mark.parametrize("names", [("p0", "p0"), ("p0", ""), ("p0", "p1")])
+def test_a_motion_at_rest_on_the_casing_loads_both_bearings_as_statics_do(names):
+    machine = make_machine("casing", names=names)
+    model = build_model(replace(machine, damping=Damping(2000.0, 300.0, 2e-6, OpenFlanks.CONTACT_ONLY)))
+    response = simulate(model, 2000.0)
+    history = bearing_history(model, response)
+    at_rest = mean_equilibrium(machine)
+    of_bodies = bearing_forces(machine, at_rest)
+    np.testing.assert_allclose(history - of_bodies, 0.0, atol=1e-6 * np.abs(of_bodies).max())
+    on_bearings, expected = shaft_bearing_history(model, response, history), at_rest.shafts[0].forces
+    np.testing.assert_allclose(on_bearings - expected, 0.0, atol=1e-6 * np.abs(expected).max())
+
+
+def test_few_motions_of_the_casing_answer_as_all_do_below_rolling_bearings(monkeypatch):
+    error = Harmonics(np.array([0.0, 1e-6, 0.0]), np.array([0.0, 2e-6, -5e-7]))
+    damping = Damping(500.0, 0.0, 2e-6, OpenFlanks.CONTACT_ONLY)
+    machine, amplitudes, sizes = (
+        replace(make_machine("casing", modes=30), error=error, damping=damping),
+        [],
+        [],
+    )
+    is_loaded = mean_equilibrium(machine).flank_forces[0] > 0.0
+    for limit in (MOTION_LIMIT, 1e6):
+        monkeypatch.setattr("facegear.machine.loaded_modes.MOTION_LIMIT", limit)
+        model = build_model(machine)
+        motion = simulate(model, 3000.0).coordinates @ model.reduction.basis.T
+        amplitudes.append(np.ptp(motion @ model.machine.linear.rows[is_loaded].T, axis=0))
+        sizes.append(model.system.size)
+    assert sizes[0] < 35 < 70 < sizes[1]
+    np.testing.assert_allclose(amplitudes[0], amplitudes[1], atol=0.01 * amplitudes[1].max())
+
+
 def test_motion_of_rolling_bearings_on_the_casing_settles(machines):
     model = build_model(
         replace(machines["casing"], damping=Damping(2000.0, 0.0, 2e-6, OpenFlanks.CONTACT_ONLY))
@@ -146,5 +180,5 @@ def test_motion_of_rolling_bearings_on_the_casing_settles(machines):
     response = simulate(model, 2000.0)
     moved = response.coordinates @ model.reduction.basis.T @ model.machine.linear.rows.T
     at_rest = mean_equilibrium(machines["casing"])
-    expected = at_rest.displacements @ model.machine.linear.rows.T
+    expected = at_rest.displacements @ machines["casing"].linear.rows.T
     np.testing.assert_allclose(moved.mean(axis=0), expected[0], atol=1e-7)

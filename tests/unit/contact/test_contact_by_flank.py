@@ -36,7 +36,7 @@ def with_errors(**errors):
 def contact_of(bodies, tooth_pair, every_flank=True):
     teeth, plan = pair(ToothPair.of_config(tooth_pair)), contact_plan(parse(Contact, CONTACT))
     found = analysis.contact_analysis(teeth.design, teeth.materials, [tuple(bodies)], plan, every_flank)
-    return contents(found)
+    return contents(found, teeth.design)
 
 
 @pytest.fixture(scope="module")

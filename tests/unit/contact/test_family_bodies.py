@@ -10,6 +10,7 @@ from family_pairs import public_pair
 from public_teeth import NAMES
 
 from facegear.contact.analysis import contact_analysis
+from facegear.contact.bodies import compliance
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.gear_flank import (
     BUILDERS,
@@ -21,8 +22,8 @@ from facegear.contact.gear_flank import (
 )
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Sector
-from facegear.contact.pattern import pattern_margins
-from facegear.contact.summary import BY_FLANK_COLUMNS, WRENCH_MEANS
+from facegear.contact.pattern import LTCA_COLUMNS, pattern_margins
+from facegear.contact.summary import BY_FLANK_COLUMNS, WRENCH_QUANTITIES
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.contact.tooth_errors import loaded_curves
 from facegear.teeth.flank_shapes import DeviationGrid
@@ -63,8 +64,20 @@ def test_both_flanks_balance_their_torque_with_the_axial_force_of_their_helicoid
         assert error.max() < 0.02
         for loads in pressure.loads:
             assert np.isfinite(loads.pressure[loads.edge == 0]).all()
-    assert list(found.by_flank.columns) == [*BY_FLANK_COLUMNS, "load_share_max", *WRENCH_MEANS]
+    assert list(found.by_flank.columns) == [*BY_FLANK_COLUMNS, "load_share_max", *WRENCH_QUANTITIES]
     assert len(found.by_flank) == 4 * len(PLAN.torques)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_wrench_at_every_position_has_the_torque_about_the_pinions_axis(bodies_of, name):
+    design = public_pair(name)
+    table = contact_analysis(design, (STEEL, STEEL), bodies_of(name), PLAN, every_flank=False).ltca[0]
+    assert tuple(table.columns) == (*LTCA_COLUMNS, *WRENCH_QUANTITIES)
+    force, moment = np.split(table[list(WRENCH_QUANTITIES[:6])].to_numpy(), 2, axis=1)
+    place, axis = np.array([design.offset, 0.0, 0.0]), design.family.motion.basis[1]
+    error = -((moment - np.cross(place, force)) @ axis) / table["torque_n_m"] - 1.0
+    assert np.abs(error).max() < 1e-3  # loads on edges have lever arms of their own
+    assert np.abs(error).min() < 1e-9
 
 
 @pytest.mark.parametrize("name", ["P1", "P3"])
@@ -112,6 +125,22 @@ def test_teeth_need_a_pair_of_bodies_for_each_flank_that_is_no_mirror_image(name
     assert len(nominal_pairs(design)) == count
     assert len(nominal_pairs(pair_design())) == 1
     assert nominal_pairs(mirror_design(design), UPPER)[0] == nominal_pairs(design, UPPER)[-1]
+
+
+def test_a_helical_pinion_s_coast_flank_takes_the_compliance_of_its_drive_flank(monkeypatch):
+    """Without taper one is the other in a mirror across the face; it was condensed a second time."""
+    design, plan = public_pair("P1"), replace(PLAN, root_stress=True)
+    expected = [gear_flank(pair, "pinion", SIZES, STEEL, plan) for pair in nominal_pairs(design, UPPER)]
+    count = []
+    condense = compliance.condense
+    monkeypatch.setattr(compliance, "condense", lambda *of: count.append(0) or condense(*of))
+    found = gear_flanks(design, "pinion", SIZES, STEEL, plan, UPPER)
+    assert len(count) == 1
+    for flank, alone in zip(found, expected, strict=True):
+        for field in ("loaded_tooth", "neighbour_blocks", "readings"):
+            values, wanted = (getattr(of.compliance, field) for of in (flank, alone))
+            np.testing.assert_allclose(values, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+        np.testing.assert_allclose(flank.gauges.error, alone.gauges.error, rtol=1e-9)
 
 
 SMALL = {

@@ -8,13 +8,13 @@ import pytest
 from contact_bodies import STEEL
 from family_pairs import public_pair
 from lattice_bodies import FLANKS_ALONE, foundation, half_spaces, model_of, patch, whole_flank
-from public_teeth import MM, NAMES, public_numbers
+from public_teeth import ERRORS, MM, NAMES, public_numbers
 from references import against, agrees
 
 from facegear.contact.hertz import contact_modulus
 from facegear.contact.lines import contact_gaps, first_roll
 from facegear.contact.ltca import check_overlap, even_positions, loaded_contact
-from facegear.contact.nodal_loads import contact_wrench, wrench_table
+from facegear.contact.nodal_loads import contact_wrenches, wrench_table
 from facegear.contact.pressure import flank_pressure
 from facegear.errors import InvalidInput
 from facegear.teeth.bounded_contact import contact_path
@@ -110,7 +110,8 @@ def test_force_of_a_light_contact_is_along_the_public_normal_and_turns_both_gear
     line = contact_line(design.family, 1)
     _, position = place_of(design, contact_path(design.family, line).middle, line)
     model = flank_model(design, (61, 21))
-    wrench = contact_wrench(model.flanks.pinion, loaded_contact(model, [position], [5.0], FLANKS_ALONE)[0])
+    results = loaded_contact(model, [position], [5.0], FLANKS_ALONE)
+    wrench = contact_wrenches(model.flanks.pinion, results)[0]
     force = np.array(public_numbers(name)["drive force on gear at 500 N m, x y z N"]) / 100.0
     assert wrench[:3] == pytest.approx(force, abs=5e-3 * np.linalg.norm(force))
     # moments about z: the gear's torque; about the pinion's axis: minus the torque that drives it
@@ -124,22 +125,26 @@ def test_force_of_a_light_contact_is_along_the_public_normal_and_turns_both_gear
     capability="contact",
     module="facegear.contact.nodal_loads",
 )
+@pytest.mark.parametrize("errors", [AssemblyErrors(), ERRORS], ids=["as designed", "displaced"])
 @pytest.mark.parametrize("name", NAMES)
-def test_wrench_is_the_derivative_of_the_transmission_error_by_the_pose(name):
+def test_wrench_is_the_derivative_of_the_transmission_error_by_the_pose(name, errors):
     """dTE/d(pose) of the loaded solution against its own wrench, with a rigid gear on a foundation."""
-    design, torque, step = public_pair(name), 5.0, 0.2e-6
-    line = contact_line(design.family, 1)
+    design, torque, step = replace(public_pair(name), assembly=errors), 5.0, 0.2e-6
+    line = contact_line(design.family, 1, errors)
     centre, position = place_of(design, contact_path(design.family, line).middle, line)
-    axis = design.family.motion.basis[1]
+    axis = line.posed_frame[0].basis[1]
     model = model_of(design, patch(design, centre, (0.06 * MM, 1.2 * MM), (41, 25)), FOUNDATION)
-    middle, force = np.array([design.offset, 0.0, 0.0]) + design.middle * axis, torque / design.normal_arm
+    middle, force = np.array([design.offset, 0.0, 0.0]), torque / design.normal_arm
+    # the error of the shaft angle tilts about the place that offset and shift of the gear put the middle to
+    middle += design.middle * design.family.motion.basis[1] + [errors.offset, 0.0, errors.gear_axial]
 
     def error(**pose):
-        posed = model.with_assembly(AssemblyErrors(**pose))
+        moved = {way: getattr(errors, way) + size for way, size in pose.items()}
+        posed = model.with_assembly(replace(errors, **moved))
         return loaded_contact(posed, [position], [torque], FLANKS_ALONE)[0].ste
 
     found = loaded_contact(model, [position], [torque], FLANKS_ALONE)[0]
-    wrench = contact_wrench(model.flanks.pinion, found)
+    wrench = contact_wrenches(model.flanks.pinion, [found])[0]
     moment = wrench[3] - np.cross(middle, wrench[:3])[0]
     ways = {"offset": np.eye(3)[0], "gear_axial": np.eye(3)[2], "pinion_axial": axis}
     works = {name: wrench[:3] @ way for name, way in ways.items()}

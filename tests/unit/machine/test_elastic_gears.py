@@ -6,7 +6,7 @@ import gear_bodies
 import numpy as np
 import pytest
 import scipy.linalg
-from gear_bodies import ANGLE, TEETH, gearbox
+from gear_bodies import ANGLE, TEETH, gearbox, spur_forces
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
@@ -20,7 +20,6 @@ from facegear.parts.modes import phase_factors
 from facegear.parts.reduced_body import ReducedBody
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
-DRIVE = np.array([[-np.sin(ANGLE), np.cos(ANGLE)]])
 PAPER = 2 * np.pi * np.array([0, 22.5, 45.5, 97.5, 120.5]) / TEETH
 
 
@@ -75,7 +74,7 @@ def in_the_body(body, speed, force, time):
 )
 def test_load_that_stands_in_space_moves_a_turning_body_as_in_the_frame_of_the_body():
     body, speed, time = gear_bodies.small_body(), 35.0, 0.05
-    own = coordinates(body, 1.0, PAPER, ANGLE)
+    own = coordinates(body, 1.0, PAPER, spur_forces())
     mode = np.repeat(np.arange(8), np.where(body.order > 0, 2, 1))
     sine = np.array([letter.endswith("s") for letter in own.letters])
     zero = body.order[mode] == 0
@@ -92,7 +91,7 @@ def test_load_that_stands_in_space_moves_a_turning_body_as_in_the_frame_of_the_b
     agrees("displacement over the largest", found / size, expected / size, absolute=1e-9)
     for term in ("gyroscopic", "circulatory", "centrifugal"):
         assert np.abs(in_space(own, speed, load, time, (term,)) - expected).max() > 1e-3 * size, term
-    lower = coordinates(body, -1.0, PAPER, ANGLE)
+    lower = coordinates(body, -1.0, PAPER, spur_forces(-1.0))
     assert np.array_equal(lower.gyroscopic, own.gyroscopic)
 
 
@@ -107,7 +106,9 @@ def test_turning_bodies_add_skew_gyroscopic_and_symmetric_centrifugal_terms_and_
     n = lumped.size
     for name in ("mass", "stiffness", "damping"):
         assert np.allclose(getattr(linear, name)[:n, :n], getattr(lumped, name), rtol=1e-12)
-    steel = np.concatenate([coordinates(body, 1.0, PAPER, ANGLE).damping for body in elastic.bodies.values()])
+    steel = np.concatenate(
+        [coordinates(body, 1.0, PAPER, spur_forces()).damping for body in elastic.bodies.values()]
+    )
     assert np.allclose(linear.damping[n:, n:], np.diag(steel), rtol=0, atol=1e-9)
     assert np.abs(linear.damping[:n, n:]).max() < 1e-9
     assert len(set(linear.labels)) == linear.size
@@ -122,11 +123,11 @@ def test_hub_moved_as_a_rigid_whole_moves_flanks_and_momentum_as_the_same_motion
         frequency=np.full(3, 100.0),
         coriolis=np.diag([0.0, 0.0, -1.0]),
         stiffening=np.zeros((3, 3)),
-        mesh=np.array([[1.0, 0.0, 0.0], [0.0, radius, -1.0]]),
+        mesh=np.array([[1.0, 0.0, 0.0], [0.0, radius, -1.0], [0.0, 0.0, 1.0]]),
         hub=np.array([[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
         hub_spin=np.zeros(3),
         round=np.array([0.0, 1.0, 0.0]),
-        static=np.zeros((2, 2, 2)),
+        static=np.zeros((2, 3, 3)),
         damping_ratio=np.array(0.0),
     )
     for gear, own in enumerate(layout.gears):
@@ -174,9 +175,9 @@ def forced_response(rpm, last):
         gear_bodies.reference_modes(), damping_ratio=np.array(0.0), stiffness_damping=np.array(3.2e-6)
     )
     body = replace(body, static=body.static[: last + 1])
-    own = coordinates(body, 1.0, angles, ANGLE)
+    own = coordinates(body, 1.0, angles, spur_forces())
     rows = own.rows[:2]
-    stiff = 4.1e8 / (1.0 + 4.1e8 * body.residual_of_flanks(DRIVE)[0, 0])
+    stiff = 4.1e8 / (1.0 + 4.1e8 * body.residual_of_flanks(spur_forces())[0, 0])
     speed, w = rpm * np.pi / 30, TEETH * 1206.29 * np.pi / 30
     error = 1e-6 * np.exp(-1j * TEETH * angles)
     stiffness = np.diag(own.stiffness) + speed * own.circulatory + speed**2 * own.centrifugal

@@ -17,7 +17,7 @@ from facegear.machine.loaded_contacts import loaded_contacts
 from facegear.machine.machine import FlankTables
 from facegear.machine.static_gears import at_rest
 from facegear.machine.statics import mean_equilibrium
-from facegear.parts.gear_body import flank_direction, influence
+from facegear.parts.gear_body import influence
 from facegear.parts.reduced_body import ReducedBody
 from facegear.pipeline.stages.gear_bodies import _left_out
 
@@ -90,7 +90,7 @@ def test_flanks_at_rest_stand_where_teeth_and_the_influence_of_all_flanks_let_th
     layout, linear = machine.layout, machine.linear
     settled = mean_equilibrium(machine)
     forces, hubs = settled.flank_forces[0], settled.displacements[0, : layout.dof]
-    flanks = [flank_direction(ANGLE, back) for back in (False, True)]
+    flanks = [gear_bodies.flank_direction(ANGLE, back) for back in (False, True)]
     given = linear.rows[:, : layout.dof] @ hubs
     for gear, own in enumerate(layout.gears):
         numbers = np.flatnonzero([g == gear for _, g in layout.meshes] * 2)

@@ -48,7 +48,7 @@ def body() -> ReducedBody:
     solved = SimpleNamespace(
         orders=orders,
         section=gear_bodies.section(),
-        static=lambda patch: np.zeros((2, 2, 2)),
+        static=lambda patch: np.zeros((2, 3, 3)),
         leaning=lambda patch: np.zeros((2, 3)),
     )
     return reduced_body(solved, PATCH, 0.0)
@@ -179,11 +179,11 @@ def test_tilt_of_a_hub_moves_flanks_and_momentum_as_the_same_motion_of_a_body_th
         frequency=np.array([100.0]),
         coriolis=np.zeros((1, 1)),
         stiffening=np.zeros((1, 1)),
-        mesh=np.array([[radius], [below]]),
+        mesh=np.array([[radius], [below], [0.0]]),
         hub=np.array([[0.5], [0.2]]),
         hub_spin=np.zeros(1),
         round=np.zeros(1),
-        static=np.zeros((2, 2, 2)),
+        static=np.zeros((2, 3, 3)),
         damping_ratio=np.array(0.0),
         pitch_height=np.array(0.01),
     )

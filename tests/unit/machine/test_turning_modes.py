@@ -94,11 +94,11 @@ def test_damping_that_turns_makes_a_mass_on_a_shaft_grow_beyond_its_natural_freq
         frequency=np.array([50.0]),
         coriolis=np.array([[-1.0]]),
         stiffening=np.array([[-1.0]]),
-        mesh=np.array([[0.0], [1.0]]),
+        mesh=np.array([[0.0], [1.0], [0.0]]),
         hub=np.zeros((2, 1)),
         hub_spin=np.zeros(1),
         round=np.zeros(1),
-        static=np.zeros((2, 2, 2)),
+        static=np.zeros((2, 3, 3)),
         damping_ratio=np.array(ratio),
     )
     machine = held_gears()
@@ -120,11 +120,11 @@ def two_waves():
         frequency=np.array([650.0, 800.0]),
         coriolis=np.diag([-0.2, -0.1]),
         stiffening=np.diag([4.0, 6.0]),
-        mesh=np.array([[0.2, 0.1], [0.02, 0.01]]),
+        mesh=np.array([[0.2, 0.1], [0.02, 0.01], [0.0, 0.0]]),
         hub=np.zeros((2, 2)),
         hub_spin=np.zeros(2),
         round=np.zeros(2),
-        static=np.zeros((2, 2, 2)),
+        static=np.zeros((2, 3, 3)),
         damping_ratio=np.array(0.0),
     )
 

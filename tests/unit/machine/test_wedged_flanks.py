@@ -29,7 +29,7 @@ from facegear.machine.statics import mean_equilibrium
 from facegear.machine.torques import balanced_torques
 from facegear.machine.turning_modes import machine_at_speeds
 from facegear.motion.steady_state.simulate import build_model, simulate
-from facegear.parts.gear_body import flank_direction, influence
+from facegear.parts.gear_body import influence
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 K, SPEED = 4.1e8, 5000.0
@@ -64,8 +64,8 @@ def wedged_pinions(seed, stiffness=SWUNG, places=TWO):
         mesh = body.mesh.copy()
         mesh[1, 0] = mesh[0, 1] = 0.0  # modes without diameters go along the axis or round it
         body = replace(body, frequency=40.0 * body.frequency, mesh=mesh)
-        left_out = np.zeros((5, 2, 2))
-        left_out[4] = np.diag(random.uniform(5e-10, 4e-9, 2))
+        left_out = np.zeros((5, 3, 3))
+        left_out[4] = np.diag([*random.uniform(5e-10, 4e-9, 2), 0.0])
         bodies[gear] = replace(body, static=body.modal + left_out)
     elastic = ElasticGears(layout, bodies)
     machine = make_machine(layout, backlash=1e-6, error=0.0, stiffness=stiffness)
@@ -93,7 +93,7 @@ def springs_with_bodies_between(machine, cycles):
     whole = np.zeros((2 * meshes, 2 * meshes))
     for mesh, (_, gear) in enumerate(layout.meshes):
         body = machine.bodies.bodies[gear]
-        sides = [flank_direction(angle, back) for back in (False, True)]
+        sides = [gear_bodies.flank_direction(angle, back) for back in (False, True)]
         rim = np.linalg.inv([[influence(body.residual, 0.0, a, b) for b in sides] for a in sides])
         both = [mesh, mesh + meshes]
         for row in teeth[:, both]:

@@ -27,6 +27,8 @@ from wrench_machines import (
 
 from facegear.errors import InvalidInput
 from facegear.harmonics import Harmonics
+from facegear.machine import statics
+from facegear.machine.block_statics import static_blocks
 from facegear.machine.drive_line import DriveLine, Seat
 from facegear.machine.flanks import flank_edges, flank_law
 from facegear.machine.imperfections import perfect
@@ -413,4 +415,22 @@ def test_rows_of_spur_teeth_are_those_of_their_closed_form_bit_for_bit(sides, be
             apart[mesh, tilts] = sign * sine * radius * tangent
     assert np.array_equal(
         layout.kinematics.flank_rows(layout), np.concatenate([apart + along, apart - along])
+    )
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3, 4, 6, 7])
+def test_compiled_statics_of_pinions_pushed_along_their_axes_are_those_of_dense_algebra(seed, monkeypatch):
+    with_shafts, _ = random_machine(np.random.default_rng([56, seed]))
+    machine = replace(with_shafts, drive_line=None)
+    assert machine.linear.rows[:, 2 : 4 * len(machine.layout.pinions) : 4].any()
+    cycles = np.array([0.0, 0.37])
+    assert static_blocks(machine) is not None
+    compiled = equilibria(machine, cycles)
+    monkeypatch.setattr(statics, "static_blocks", lambda machine: None)
+    dense = equilibria(machine, cycles)
+    agree(compiled.flank_forces, dense.flank_forces, absolute=1e-9 * dense.flank_forces.max())
+    agree(
+        bearing_loads(machine.linear, compiled.displacements),
+        bearing_loads(machine.linear, dense.displacements),
+        absolute=1e-9 * dense.flank_forces.max() * machine.linear.lengths.max(initial=1.0),
     )

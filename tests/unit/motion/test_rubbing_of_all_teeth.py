@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from floating_machines import KINDS, MESH_DAMPING, ByHand, machine_of
+from floating_machines import KINDS, MESH_DAMPING, ByHand, make_floating_machine
 from public_casing import mount_public
 from recorded_motion import record
 from references import against, agrees
@@ -111,7 +111,7 @@ class Wrenches:
 
 def rubbing_machine(name):
     teeth = KINDS[name]
-    machine = machine_of(teeth)
+    machine = make_floating_machine(teeth, False)
     return teeth, replace(machine, friction=Wrenches().friction(machine, teeth))
 
 
@@ -152,7 +152,7 @@ class RubbedByHand(ByHand):
 
     def slope(self, t, state):
         moved, speed = np.split(state, 2)
-        stiffness, over, _ = self.flanks(t, moved, speed)
+        stiffness, over, *_ = self.flanks(t, moved, speed)
         slope = super().slope(t, state)
         slope[moved.size :] += self.friction(t, stiffness * over) / self.mass
         return slope
@@ -227,7 +227,7 @@ def test_power_in_less_power_out_less_friction_less_damping_changes_the_energy(n
         return at @ basis.T, omega * rate @ basis.T
 
     def energy(t, moved, speed):
-        stiffness, over, _ = by_hand.flanks(t, moved, speed)
+        stiffness, over, *_ = by_hand.flanks(t, moved, speed)
         elastic = 0.5 * (moved @ by_hand.spring @ moved + stiffness @ over**2)
         return 0.5 * by_hand.mass @ speed**2 + elastic
 
@@ -236,7 +236,7 @@ def test_power_in_less_power_out_less_friction_less_damping_changes_the_energy(n
     sums = dict.fromkeys(("power", "friction", "damping", "law", "even"), 0.0)
     for phase, weight, moved, speed in zip(phases, weights / omega, *motion(phases, step), strict=True):
         t, tick = phase / omega, 1e-9
-        stiffness, over, closing = by_hand.flanks(t, moved, speed)
+        stiffness, over, closing, _ = by_hand.flanks(t, moved, speed)
         growth = (by_hand.law(t + tick)[0] - by_hand.law(t - tick)[0]) / (2 * tick)
         force, error_rate = stiffness * over, by_hand.law(t)[2]
         rubbing = by_hand.friction(t, force, at_output=False)

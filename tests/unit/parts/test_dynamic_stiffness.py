@@ -32,7 +32,7 @@ def of_matrices(disc, order):
     carried = stress - centrifugal - order**2 * mass - 2 * order * coriolis
     whole = (1 + 1j * W * LAG - 1j * order * TURNING * LAG) * stiffness - W**2 * mass + TURNING**2 * carried
     whole = whole + 2 * W * TURNING * (order * mass + coriolis)
-    loads = np.stack(disc.on_teeth)[:, free]
+    loads = disc.on_teeth[:, free]
     return loads @ scipy.sparse.linalg.spsolve(whole.tocsc(), loads.T.astype(complex))
 
 
@@ -45,7 +45,7 @@ def of_modes(disc, order, up_to):
     carried = modes.stress - modes.centrifugal - order**2 * one - 2 * order * modes.coriolis
     whole = (1 + 1j * W * LAG - 1j * order * TURNING * LAG) * squared - W**2 * one + TURNING**2 * carried
     whole = whole + 2 * W * TURNING * (order * one + modes.coriolis)
-    means = np.stack(disc.on_teeth)
+    means = disc.on_teeth
     left_out = means @ solve(means.T) - modal_compliance(modes)
     return modes.teeth @ np.linalg.solve(whole, modes.teeth.T) + left_out
 
@@ -67,5 +67,5 @@ def test_modes_and_the_static_rest_answer_a_load_in_space_as_the_whole_turning_b
     ]
     agrees("compliance over the largest, modes to 64 kHz", off[2], 0.0, absolute=2e-6)
     assert off[1] < off[0] / 3.5 and off[2] < off[1] / 3.5
-    static = np.stack(disc.on_teeth) @ held_solver(disc, order)(np.stack(disc.on_teeth).T)
+    static = disc.on_teeth @ held_solver(disc, order)(disc.on_teeth.T)
     assert np.abs(static - exact)[:2, :2].max() > 0.1 * size

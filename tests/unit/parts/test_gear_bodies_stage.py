@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gear_bodies import PATCH, reference_body
+from gear_bodies import PATCH, reference_body, spur_forces
 from references import against, agrees
 
 import facegear
@@ -145,8 +145,8 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     bodies = {"lower": common, "upper": fitted}
     said = stage._fitted_layers(bodies, stage._solve_bodies(bodies, FLEXIBLE.tooth_pair))
     assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
-    for section in bodies.values():
-        tooth_contact._solve_body(section, FLEXIBLE.tooth_pair)
+    for gear, section in bodies.items():
+        tooth_contact._solve_body(section, FLEXIBLE.tooth_pair, gear)
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 
@@ -227,8 +227,7 @@ def test_reduced_bodies_come_back_from_their_arrays(outcome):
     body = ReducedBody.of_arrays(arrays, "upper")
     assert body.arrays("upper") == {key: value for key, value in arrays.items() if key.startswith("upper_")}
     static = outcome.content["bodies"].set_index("gear").loc["upper"]
-    angle = np.radians(25.0)
-    own = body.residual_of_flanks(np.array([[-np.sin(angle), np.cos(angle)]]))[0, 0]
+    own = body.residual_of_flanks(spur_forces())[0, 0]
     left = (1.0 - static["modal_fraction"]) * static["own_compliance_m_per_n"]
     assert own == pytest.approx(left, rel=1e-9)
 

@@ -8,9 +8,10 @@ import pytest
 from gear_bodies import STEEL
 
 from facegear.build.config import Config
-from facegear.build.elastic_bodies import body_shape, crosses_rectangle
+from facegear.build.elastic_bodies import body_shape
 from facegear.build.load import load_config
 from facegear.build.machine_layout import layout
+from facegear.build.teeth_on_body import crosses_rectangle
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.errors import ConfigErrors
 from facegear.machine.layout import Tilt
@@ -218,6 +219,6 @@ def test_inertia_about_a_diameter_of_another_height_is_that_of_the_mass_moved_th
     assert inertia_about(disc, 0.045) == pytest.approx(across + mass * 0.05**2, rel=1e-12)
     toothed = replace(disc, layer=Layer(0.1, 0.2, 0.01, 0.04, taper=0.5))
     heights = 0.01 + 0.03 * (np.arange(4000) + 0.5) / 4000
-    slices = toothed.layer.density_at(heights) * mass / 4000
+    slices = toothed.layer.density_at(0.15, heights) * mass / 4000
     added = (slices * ((0.2**2 + 0.1**2) / 4.0 + (heights - 0.045) ** 2)).sum()
     assert inertia_about(toothed, 0.045) - inertia_about(disc, 0.045) == pytest.approx(added, rel=1e-6)

@@ -4,6 +4,7 @@ from dataclasses import fields
 from math import cos, pi, radians, sin, tan
 
 import numpy as np
+import pandas as pd
 import pytest
 from kinds_of_teeth import public_section
 
@@ -12,8 +13,11 @@ from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.contact.summary import BY_FLANK_COLUMNS
 from facegear.lubrication.pairs import FlankPairs
 from facegear.pipeline.stages.friction import loaded_pairs
+from facegear.pipeline.stages.strength import rating
 from facegear.schema.base import parse
 from facegear.schema.lubrication import LubricationSection
+from facegear.schema.strength import Strength
+from facegear.strength.columns import DUTY_SPECTRUM_COLUMNS
 from facegear.studies.lubricated_teeth import reduction_over
 
 COARSE = {
@@ -124,19 +128,105 @@ def test_mesh_law_has_a_table_of_each_flank_of_helical_teeth(gearbox_of):
 FINE_FILLETS = {"profile_mm": 0.8, "width_mm": 4, "thickness_mm": 4, "fillet_mm": 0.4, "fillet_depth_mm": 0.4}
 
 
-def test_root_stress_and_its_error_follow_the_mirror_rule():
-    """The back flanks had the error of the drive flanks' distance of planes: 16.0 instead of 4.5 MPa."""
-    tables = []
+BODY_STRENGTH = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
+STRENGTH = {
+    "pinion": BODY_STRENGTH,
+    "face_gear": BODY_STRENGTH,
+    "load_factors": "machine",
+    "duty": [{"torque_n_m": 600, "speed_rpm": 6000, "hours": 100}],
+}
+MIRRORED = {"drive": "back", "back": "drive"}
+
+
+@pytest.fixture(scope="module")
+def hands():
+    """Pairs with root stress by their helix angle: right-hand pinions and their mirror images."""
+    gearboxes = {}
     for beta in (15, -15):
         section = public_section("P1") | {"helix_angle_deg": beta}
         section["shaper"] = section["shaper"] | {"tip_rounding_modules": 0.1}
         contact = COARSE["contact"] | {"root_stress": True, "positions_per_pitch": 8}
         values = {"tooth_pair": section, "contact": contact, "mesh": {"resolution": FINE_FILLETS}}
-        tables.append(facegear.load({"case": "kind"} | values, results=None).root_stress().by_flank())
-    for flank, other in (("drive", "back"), ("back", "drive")):
+        gearboxes[beta] = facegear.load({"case": "kind"} | values, results=None)
+    return gearboxes
+
+
+def test_root_stress_and_its_error_follow_the_mirror_rule(hands):
+    """The back flanks had the error of the drive flanks' distance of planes: 16.0 instead of 4.5 MPa."""
+    tables = [gearbox.root_stress().by_flank() for gearbox in hands.values()]
+    for flank, other in MIRRORED.items():
         mine, theirs = tables[0][tables[0]["flank"] == flank], tables[1][tables[1]["flank"] == other]
         for name in ("largest_mpa", "largest_error_mpa", "passage", "radius_mm"):
             np.testing.assert_allclose(mine[name], theirs[name], rtol=1e-6)
+
+
+def rate_flanks(gearbox, torques):
+    """Return table `rating` of a pair whose flanks carry torques (N m) by their names, as in a machine."""
+    section = parse(ToothPair, gearbox.values["tooth_pair"])
+    arm = pair_design(section).normal_arm
+    spectrum = pd.DataFrame(
+        [
+            (1, body, gear, flank, "engine/upper", 1.0, torque / arm)
+            for body, gear in (("engine", "pinion"), ("upper face gear", "face_gear"))
+            for flank, torque in torques.items()
+        ],
+        columns=list(DUTY_SPECTRUM_COLUMNS),
+    )
+    contents = gearbox.root_stress().content["stress"], gearbox.contact().by_flank()
+    strength = parse(Strength, STRENGTH)
+    return rating(*contents, spectrum, tooth_pair=section, strength=strength, gears=["upper"]).content
+
+
+def test_rated_stress_of_each_flank_is_that_of_contact_at_the_same_torque(hands):
+    gearbox = hands[15]
+    rows = rate_flanks(gearbox, {"drive": 600.0, "back": 300.0})["rating"].set_index(
+        ["gear", "flank", "method"]
+    )
+    roots = gearbox.root_stress().by_flank().groupby(["gear", "flank", "torque_n_m", "body"])["largest_mpa"]
+    pressure = gearbox.contact().by_flank().set_index(["gear", "flank", "torque_n_m"])["pressure_mpa"]
+    for flank, torque in (("drive", 600.0), ("back", 300.0)):
+        for body in ("pinion", "face_gear"):
+            stress = rows.loc[(body, flank, "finite elements"), "stress_mpa"]
+            assert stress == pytest.approx(roots.max()["upper", flank, torque, body], rel=1e-12)
+            stress = rows.loc[(body, flank, "contact analysis"), "stress_mpa"]
+            assert stress == pytest.approx(pressure["upper", flank, torque], rel=1e-12)
+
+
+def test_rating_of_each_flank_is_that_of_the_other_flank_of_the_other_hand(hands):
+    """Rule of the mirror, with the compression by either flank's own contact where teeth bend both ways."""
+    ours = rate_flanks(hands[15], {"drive": 600.0, "back": 500.0})
+    theirs = rate_flanks(hands[-15], {"drive": 500.0, "back": 600.0})
+    keys = ["gear", "flank", "failure", "method"]
+    for name in ("rating", "damage"):
+        mirrored = theirs[name].assign(flank=theirs[name]["flank"].map(MIRRORED))
+        mine, others = (table.sort_values(keys, ignore_index=True) for table in (ours[name], mirrored))
+        pd.testing.assert_frame_equal(mine, others, rtol=1e-12)
+    allowed = ours["rating"].set_index(keys)["allowed_mpa"]
+    flanks = [allowed["face_gear", flank, "bending", "finite elements"] for flank in MIRRORED]
+    assert abs(flanks[0] / flanks[1] - 1.0) > 0.005  # each has a stress ratio of its own
+
+
+def test_rating_of_tapered_teeth_goes_to_that_of_spur_teeth_in_proportion():
+    """Stress, what is allowed and safety of both gears by finite elements, on a narrow face."""
+    section = public_section("P2")
+    section["shaper"] = section["shaper"] | {"tip_rounding_modules": 0.1}
+    section["face_gear"] = section["face_gear"] | {"outer_radius_mm": 262}
+    section["pinion"] = section["pinion"] | {"width_mm": 12, "middle_mm": 257.5}
+    sector = {"sector": {"pinion_teeth": 5, "face_gear_teeth": 5}}
+    contact = COARSE["contact"] | sector | {"torques_n_m": [300], "root_stress": True}
+    strength = STRENGTH | {"load_factors": "given", "pinion": BODY_STRENGTH | {"both_ways": True}}
+    strength["duty"] = [{"torque_n_m": 300, "speed_rpm": 6000, "hours": 100}]
+    values = {"case": "kind", "contact": contact, "strength": strength}
+    values["mesh"] = {"resolution": FINE_FILLETS | {"width_mm": 6}}
+    numbers = []
+    for taper in (0.0, 1e-4, 1e-3):
+        teeth = {"tooth_pair": section | {"taper_angle_deg": taper}}
+        table = facegear.load(values | teeth, results=None).rating().table()
+        rows = table[table["method"].isin(["finite elements", "contact analysis"])]
+        numbers.append(rows[["stress_mpa", "allowed_mpa", "safety"]].to_numpy())
+    small, large = (np.abs(each / numbers[0] - 1.0) for each in numbers[1:])
+    assert (large < 1e-4).all() and large.max() > 1e-5
+    np.testing.assert_allclose(small, 0.1 * large, rtol=1e-2, atol=1e-11)
 
 
 OIL = {"oil": "polyol_ester_5_cst", "supply_temperature_c": 100, "pinion": {"ra_um": 0.3}}

@@ -97,6 +97,23 @@ def test_a_caveat_is_a_mark_and_never_the_colour(example, safety):
     assert set(colours) == {"green" if safety >= 1.0 else "red"}
 
 
+def test_teeth_that_the_standard_does_not_know_are_marked(example):
+    caveat = "not compared with ISO 6336, which does not know tapered teeth"
+    verdict = judged(example[0], {**example[1], **rating(safety=1.2, caveat=caveat)})["Pitting"]
+    assert verdict.colour == "green" and verdict.caveats == ("not in ISO 6336",)
+
+
+def test_pitting_without_a_rating_of_every_flank_is_grey(example):
+    """Edges that carry all load on tapered teeth leave nothing to rate: bending alone made all green."""
+    (table,) = rating(safety=1.2).values()
+    bending = table.assign(failure="bending")
+    for pitting, words in ((table.iloc[:0], "Not rated: edges"), (table, "1 of 2 flanks are not rated")):
+        other_flank = bending.assign(flank="back")
+        rows = {"rating": pd.concat([bending, other_flank, pitting], ignore_index=True)}
+        verdict = judged(example[0], {**example[1], **rows})["Pitting"]
+        assert verdict.colour == "grey" and words in verdict.reason
+
+
 def test_what_was_not_asked_for_or_not_computed_is_grey_and_says_which(example):
     values, tables = example
     found = judged({**values, "lubrication": None}, tables)

@@ -61,8 +61,9 @@ def test_friction_loss_is_taken_off_the_power_out(example):
     )
 
 
-def test_the_shift_of_the_contact_path_is_a_number():
-    pair = {
+def pair_record():
+    """Return what the chapter reads of the record of a spur pair."""
+    return {
         "design_si": asdict(pair_design()),
         "radii_mm": {"gear_inner": 190.0, "gear_outer": 212.0, "gear_contact_path_nominal": 202.0},
         "limits_mm": {"inner_undercut": 188.0, "outer_pointing": 230.0},
@@ -70,7 +71,18 @@ def test_the_shift_of_the_contact_path_is_a_number():
         "contact_ratio": 1.5,
         "backlash_um": {"smallest": 100.0},
     }
+
+
+def test_a_face_with_one_limit_does_not_show_it_as_a_range():
+    """The row "Radii without undercut and pointed teeth" of tapered teeth held one radius."""
+    pair = {**pair_record(), "limits_mm": {"inner_undercut": 188.0, "outer_pointing": None}}
     numbers = key_numbers({}, pair).set_index("quantity")["value"]
+    assert numbers["Smallest radius that the face may have; it has no largest"] == "188"
+    assert not [name for name in numbers.index if name.startswith(("Radii", "Largest radius"))]
+
+
+def test_the_shift_of_the_contact_path_is_a_number():
+    numbers = key_numbers({}, pair_record()).set_index("quantity")["value"]
     assert numbers["Shift of the unloaded contact path, positive outwards"] == "-3.9"
 
 

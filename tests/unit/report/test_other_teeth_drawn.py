@@ -3,11 +3,13 @@
 from dataclasses import asdict
 
 import numpy as np
+import pandas as pd
 import pytest
 from kinds_of_teeth import public_section
 from public_teeth import NAMES, public_numbers
 
 from facegear.build.tooth_pair import ToothPair, pair_design
+from facegear.report.chapter_tables import root_stress_tables
 from facegear.report.data_sheet import teeth_in_words
 from facegear.report.figures.teeth import tooth_pair, tooth_sections
 from facegear.report.figures.tooth_skins import (
@@ -87,3 +89,14 @@ def test_teeth_without_a_pointing_radius_are_drawn(drawn):
     assert note.startswith("undercut below 214.600 mm") and "not pointed" in note
     assert "contact path from 224.000 to 228.000 mm along the pinion" in note
     assert len(tooth_pair(record, flanks).panels) == 1
+
+
+def test_root_stress_of_every_flank_is_listed_where_flanks_differ():
+    summary = pd.DataFrame({"torque_n_m": [300.0, 600.0], "largest_mpa": [250.0, 444.0]})
+    coast = summary.assign(largest_mpa=[187.0, 356.0])
+    for back, shown in ((summary, []), (coast, ["drive", "drive", "back", "back"])):
+        by_name = {"drive": summary, "back": back}
+        flanks = [part.assign(gear="upper", flank=name) for name, part in by_name.items()]
+        tables = {"root_stress": summary, "root_stress_by_flank": pd.concat(flanks)}
+        by_flank = root_stress_tables(tables)[1:]
+        assert [flank for table in by_flank for flank in table.frame["flank"]] == shown

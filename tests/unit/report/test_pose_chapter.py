@@ -47,6 +47,12 @@ def test_the_load_at_which_a_contact_leaves_the_face_is_said_and_that_none_does_
     assert "Up to 127 % of the torque no contact leaves the face" in pose_text(tables(leaving=LEAVING[:0]))
 
 
+def test_names_of_meshes_keep_their_capitals():
+    """A sentence's first letter became a capital, and all others small ones."""
+    text = pose_text(tables(leaving=LEAVING.assign(mesh="engine A/upper")))
+    assert "At 122 % of the torque the contact of engine A/upper leaves" in text
+
+
 def test_a_contact_beyond_the_end_is_not_called_near_it():
     beyond = MESHES.assign(to_outer_end_mm=[-0.4, 8.0, 23.9])
     text = pose_text(tables(meshes=beyond))

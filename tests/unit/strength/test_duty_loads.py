@@ -77,7 +77,10 @@ def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
     most = spectrum.groupby(["bin", "mesh"])["force_n"].max()
     np.testing.assert_allclose(most, loads.groupby(["bin", "mesh"])["largest_force_n"].max(), rtol=1e-12)
     duty = [DutyBin(600.0, 125.0, 3600.0), DutyBin(900.0, 80.0, 60.0)]
-    by_body = {(one.body, one.flank): one for one in machine_duty(spectrum, duty, 23 / 143, 0.04)}
+    by_body = {
+        (one.body, one.flank): one
+        for one in machine_duty(spectrum, duty, 23 / 143, {"drive": 0.04, "back": 0.04})
+    }
     turns = 125.0 * 3600.0 + 80.0 * 60.0
     agrees(
         "cycles of an input's drive flank",

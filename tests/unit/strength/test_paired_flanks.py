@@ -6,7 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.strength.flank_contacts import contacts_of, flank_contacts, met_by, worst_pressure, worst_root
+from facegear.strength.flank_contacts import (
+    contacts_of,
+    flank_contacts,
+    met_by,
+    worst_contact,
+    worst_pressure,
+)
 from facegear.strength.materials import FlankDuty
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays
@@ -65,10 +71,11 @@ def contacts(numbers):
 def test_the_worst_of_all_contacts_of_a_flank_is_rated():
     found = contacts(NUMBERS)
     for number, contact in enumerate(found.values()):
-        assert worst_root(DUTY, [contact]).stress.max() == pytest.approx(1000.0 * SIZES[number])
-    met = [found[one] for one in met_by(DUTY, GEARS)]
-    assert worst_root(DUTY, met).stress.max() == pytest.approx(1100.0)
-    pressure = worst_pressure(met)
+        assert contact.roots["pinion"].stress.max() == pytest.approx(1000.0 * SIZES[number])
+    met = {at: found[at] for at in met_by(DUTY, GEARS)}
+    assert worst_contact(DUTY, met) == ("lower", "drive")
+    assert worst_contact(DUTY, found) == ("upper", "back")
+    pressure = worst_pressure(list(met.values()))
     np.testing.assert_allclose(pressure.pressure, 1e6 * 930.0 * np.array([300.0, 1000.0]))
     np.testing.assert_allclose(pressure.edge_load, 1e3 * 50.0 * 930.0)
     np.testing.assert_allclose(pressure.fillet_share, 0.093)

@@ -10,7 +10,11 @@ from references import against, agrees
 from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
+from facegear.build.config import resolved_values
+from facegear.build.load import config_of
+from facegear.build.lumped_model import stiffness_lags
 from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import lumped_sections
 from facegear.harmonics import Harmonics
 from facegear.machine.flanks import flank_law, flank_places
 from facegear.quantities import BODIES
@@ -28,6 +32,8 @@ from facegear.strength.root_tables import root_tables
 from facegear.teeth.placement import FLANKS
 
 PRESSURE = ContactPressure(TORQUES, np.sqrt(TORQUES), *np.zeros((4, 2)))
+ARMS = dict.fromkeys(FLANKS, 0.1)
+"""Torque over force of both flanks, m."""
 EDGES_ALONE = replace(PRESSURE, pressure=np.full(2, np.nan))
 
 
@@ -47,7 +53,7 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
     roots = {"pinion": found, "face_gear": found}
     contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
-    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
+    table = dynamic_stress_table(forces, places, ARMS, contacts).set_index("mesh")
     agrees("dynamic factor", table["dynamic_factor"].iloc[:2].tolist(), [1.5, 1.0], relative=1e-6)
     assert np.isnan(table.loc["open", "dynamic_factor"])
     assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
@@ -69,7 +75,7 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
         1e-6 * np.sqrt(200.0),
         relative=1e-6,
     )
-    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, contacts)
+    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, ARMS, contacts)
     assert not beyond["within_torques_solved"].any()
 
 
@@ -104,7 +110,7 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     forces = {"a/upper": force, "a/lower": -force, "b/lower": np.array([3000.0, -1000.0])}
     places = dict.fromkeys(forces, np.array([0.0, 0.5]))
     contacts = {key: {"drive": drive, "back": back} for key in forces}
-    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
+    table = dynamic_stress_table(forces, places, ARMS, contacts).set_index("mesh")
     for column in ("pinion_mean_mpa", "pinion_running_mpa", "face_gear_bound_mpa"):
         agrees(
             "stress of the back flank, MPa",
@@ -122,8 +128,25 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     alone = [contact.history["face_gear"].over_passage(at) for contact, at in ((drive, 300.0), (back, 100.0))]
     agrees("bound of a flank loaded from both sides, MPa", both, 1e-6 * max(alone), relative=1e-6)
     swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/lower", 3000.0)], columns=list(FORCE_COLUMNS))
-    over = stress_table(swept, 1.0, 0.1, {"a/lower": [drive, back]})
+    over = stress_table(swept, 1.0, ARMS, {"a/lower": {"drive": drive, "back": back}})
     assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * back.tension["pinion"](300.0))
+
+
+def test_each_flank_in_motion_has_the_torque_of_its_own_arm():
+    """Forces of coast flanks became torques by the arm of drive flanks, whatever their pressure angle."""
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    contact = FlankContact(dict.fromkeys(BODIES, found), PRESSURE)
+    contacts = {"a/upper": dict.fromkeys(FLANKS, contact)}
+    places = {"a/upper": np.array([0.0, 0.5])}
+    forces = {"a/upper": np.array([-2000.0, -1500.0])}
+    found_with, expected = (
+        dynamic_stress_table(forces, places, {"drive": drive, "back": 0.1}, contacts) for drive in (0.05, 0.1)
+    )
+    pd.testing.assert_frame_equal(found_with, expected, check_exact=True)
+    swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/upper", 3000.0)], columns=list(FORCE_COLUMNS))
+    for arms in ({"drive": 0.05, "back": 0.1}, {"drive": 0.1, "back": 0.07}):
+        over = stress_table(swept, 1.0, arms, contacts)
+        assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * contact.tension["pinion"](300.0))
 
 
 @pytest.mark.parametrize("edges_alone", FLANKS)
@@ -135,10 +158,10 @@ def test_pressure_in_motion_is_known_where_edges_carry_all_on_one_of_two_loaded_
         flank: FlankContact(roots, EDGES_ALONE if flank == edges_alone else PRESSURE) for flank in FLANKS
     }
     forces, places = {"a/upper": np.array([3000.0, -3000.0])}, {"a/upper": np.array([0.0, 0.5])}
-    table = dynamic_stress_table(forces, places, 0.1, {"a/upper": contacts})
+    table = dynamic_stress_table(forces, places, ARMS, {"a/upper": contacts})
     assert table["pressure_bound_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
     swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/upper", 3000.0)], columns=list(FORCE_COLUMNS))
-    over = stress_table(swept, 1.0, 0.1, {"a/upper": list(contacts.values())})
+    over = stress_table(swept, 1.0, ARMS, {"a/upper": contacts})
     assert over["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
 
 
@@ -149,7 +172,7 @@ def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_eac
     forces = {str(force): np.full(16, force) for force in (500.0, 1500.0, 1700.0, 2500.0, 5000.0)}
     places = dict.fromkeys(forces, np.arange(16) / 16)
     contacts = dict.fromkeys(forces, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
-    table = dynamic_stress_table(forces, places, 0.1, contacts)
+    table = dynamic_stress_table(forces, places, ARMS, contacts)
     assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
 
 
@@ -159,11 +182,20 @@ def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_eac
     capability="dynamic_root_stress",
     module="facegear.machine.flanks",
 )
-def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
+@pytest.mark.parametrize("config", ["facegear/example.yaml", "config/helical.yaml"])
+def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference(config):
+    """A helical pinion that stands outwards is as one that has turned, which stress did not know."""
     stiffness = Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
-    machine = MachineInputs.of_config(facegear.example().values, stiffness).build()
+    values = facegear.load(config).config.model_dump(mode="json")
+    for pinion in values["transmission"]["pinions"]:
+        place = {"x": 0, "y": 0, "z": 700}
+        values["transmission"]["single_pinions"].setdefault(pinion["name"], {})["position_um"] = place
+    values = resolved_values(config_of(values))
+    inputs = MachineInputs.of_config(values, stiffness)
+    machine = replace(inputs, unloaded_error=Harmonics(np.zeros(1), np.zeros(1))).build()
     cycles = np.linspace(0.0, 2.0, 23)
-    places = flank_places(machine.phases, cycles)
+    lags = stiffness_lags(*lumped_sections(values["transmission"], values["tooth_pair"]))
+    places = flank_places(lags, cycles)
     found = flank_law(machine).stiffness(cycles)
     agrees("stiffness of a flank, N/m", found, machine.stiffness(places), relative=1e-9)
 
@@ -223,8 +255,8 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
     pressure = replace(PRESSURE, pressure=np.array([5e8, 9e8]))
     roots = {"pinion": found, "face_gear": found}
-    contacts = {key: [FlankContact(roots, pressure)] for key in forces["mesh"]}
-    table = stress_table(forces.reset_index(drop=True), 750.0, 0.1, contacts)
+    contacts = {key: {"drive": FlankContact(roots, pressure)} for key in forces["mesh"]}
+    table = stress_table(forces.reset_index(drop=True), 750.0, ARMS, contacts)
     at_1000 = table[table["speed_rpm"] == 1000.0].set_index("motion")
     assert at_1000.loc["sweep up", "mesh"] == "b/upper"
     agrees(
@@ -247,6 +279,6 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
         relative=1e-6,
     )
     assert pressure.at(1200.0) == pytest.approx(2.0 * 9e8)
-    nowhere = {key: [FlankContact(roots, EDGES_ALONE)] for key in forces["mesh"]}
-    idle = stress_table(forces.reset_index(drop=True), 0.0, 0.1, nowhere)
+    nowhere = {key: {"drive": FlankContact(roots, EDGES_ALONE)} for key in forces["mesh"]}
+    idle = stress_table(forces.reset_index(drop=True), 0.0, ARMS, nowhere)
     assert idle["pressure_mpa"].isna().all() and idle["dynamic_factor"].isna().all()

@@ -15,12 +15,15 @@ from unloaded_pairs import MIRROR, contact_angles, pinion_points, unloaded_line
 
 from facegear.errors import GeometryError
 from facegear.teeth.bounded_contact import contact_path
+from facegear.teeth.closest import PAIRS
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.family_limits import check_family
-from facegear.teeth.placement import mirror_design, to_left_flank
+from facegear.teeth.pinion import junction_roll, tip_roll
+from facegear.teeth.placement import mirror_design, pinion_angle, to_left_flank
 from facegear.teeth.rays import FILLET, FLANK, ROOT_LAND, TIP_LAND
 from facegear.teeth.separation import separation
-from facegear.teeth.surfaces import SurfacePoints
+from facegear.teeth.surfaces import SurfacePoints, flank_points
+from facegear.teeth.unloaded_contact import unloaded_motion
 
 RANDOM, GROUP = 20, 5
 """Number of random designs, and how many a test takes."""
@@ -195,3 +198,24 @@ def test_gaps_move_in_proportion_to_a_small_departure_from_spur(key):
     assert np.abs(slopes[2] - slopes[1]).max() < 1e-2 * size
     assert same.sum() > 0.995 * np.sum(parts > 0)
     assert {FLANK, FILLET, TIP_LAND} <= set(parts[same])
+
+
+def test_rays_of_a_pinion_that_stands_inwards_past_undercut_miss_the_gear_or_meet_it():
+    """Newton's method found no foot of rays that leave the flank over its lower edge, near undercut."""
+    public, inner = pair_of(public_design("P1")), 215e-3
+    design = replace(
+        public,
+        face_gear=replace(public.face_gear, inner_radius=inner),
+        pinion=replace(public.pinion, middle=public.middle - 6e-3),
+    )
+    ends = design.middle + np.array([-0.5, 0.5]) * design.pinion.width
+    y, share = (part.ravel() for part in np.meshgrid(np.linspace(*ends, 57), np.linspace(0.0, 1.0, 41)))
+    roll = junction_roll(design, y) + share * (tip_roll(design, y) - junction_roll(design, y))
+    phi1 = pinion_angle(design, np.linspace(0.0, 1.0, 5))
+    phi2, _ = unloaded_motion(design, phi1)
+    placements = (np.repeat(angles, PAIRS.size) for angles in (phi1, phi2))
+    points = flank_points(design, roll, y)
+    found = separation(design, points, *placements, np.tile(PAIRS, phi1.size), 1e-3)
+    on_flank = found.part == FLANK
+    assert on_flank.any()
+    assert found.radius[on_flank].min() >= inner

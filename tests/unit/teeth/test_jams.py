@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from family_pairs import public_pair
 
 from facegear.errors import FacegearError
 from facegear.pipeline.stages.teeth import geometry
@@ -41,3 +42,12 @@ def test_a_jam_is_refused_with_its_amount(pair, monkeypatch):
         geometry(None)
     assert str(caught.value).startswith("tooth_pair: the bodies jam by 101.2 um along the line of action: ")
     assert "the gear's tip edge stands 47.5 um deep in the pinion's fillet" in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["P1", "P2"])
+def test_a_jam_of_other_teeth_is_found_without_a_number_that_is_not_one(name):
+    """Points beyond the reach of the search stand at an infinite distance before and after the turn."""
+    usual = public_pair(name, thinning=0.0)
+    tall = replace(usual, face_gear=replace(usual.face_gear, addendum=1.2 * usual.module))
+    with np.errstate(invalid="raise"):
+        assert 1e-4 < jam(tall, analyse(tall, 4)).depth < 1e-3

@@ -69,6 +69,21 @@ std::shared_ptr<const motion::LoadDependentLaw> load_dependent_law(const Doubles
     return law;
 }
 
+std::shared_ptr<const motion::MovingLaw> moving_law(const Doubles<5>& table, const Doubles<2>& levels,
+                                                    const Integers& kind, Index first_place) {
+    auto law = std::make_shared<motion::MovingLaw>();
+    law->kinds = static_cast<Index>(table.shape(0));
+    law->level_count = static_cast<Index>(table.shape(1));
+    law->harmonics = static_cast<Index>(table.shape(2));
+    require(law->level_count > 0 && law->harmonics > 0, "a table must have levels and a mean");
+    law->table = numbers_of<double>(
+        table, {law->kinds, law->level_count, law->harmonics, 2, motion::MovingLaw::powers}, "table");
+    law->levels = numbers_of<double>(levels, {law->kinds, law->level_count}, "levels");
+    law->kind = kinds_of(kind, law->kinds, "kind");
+    law->first_place = first_place;
+    return law;
+}
+
 std::shared_ptr<const motion::PowerLaw> power_law(const Doubles<3>& factor, double size, double exponent,
                                                   double level, Index contacts) {
     auto law = std::make_shared<motion::PowerLaw>();
@@ -93,7 +108,10 @@ std::shared_ptr<const motion::System> system_of(
                 m = s->m = static_cast<Index>(jacobian.shape(0));
     const Index rings = static_cast<Index>(ring_stiffness.size()),
                 rubbing = static_cast<Index>(rubbing_flank.size());
-    s->contacts = m - motion::ring_rows * rings;
+    const auto* moving = std::get_if<std::shared_ptr<const motion::MovingLaw>>(&law);
+    const Index places = moving != nullptr && *moving ? (*moving)->contacts() : 0;
+    s->contacts = m - motion::ring_rows * rings - places;
+    require(places == 0 || (*moving)->first_place == m - places, "places must be the last rows");
     require(n > 0 && m > 0 && s->contacts > 0, "a system must have coordinates and contacts");
     require(pairs >= 0 && 2 * pairs <= s->contacts, "pairs must be at most half the contacts");
     s->pairs = pairs;
@@ -323,6 +341,7 @@ void bind_motion(nb::module_ module) {
     nb::class_<motion::LinearLaw>(module, "LinearLaw");
     nb::class_<motion::LoadDependentLaw>(module, "LoadDependentLaw");
     nb::class_<motion::PowerLaw>(module, "PowerLaw");
+    nb::class_<motion::MovingLaw>(module, "MovingLaw");
     nb::class_<motion::System>(module, "System")
         .def("fits", [](const motion::System& one, const motion::System& other) { return fits(one, other); });
     nb::class_<motion::Machine>(module, "Machine");
@@ -330,6 +349,7 @@ void bind_motion(nb::module_ module) {
     bind_log(module);
     module.def("linear_law", &linear_law, "fourier"_a, "kind"_a, "breaks"_a, "pieces"_a);
     module.def("load_dependent_law", &load_dependent_law, "table"_a, "levels"_a, "kind"_a);
+    module.def("moving_law", &moving_law, "table"_a, "levels"_a, "kind"_a, "first_place"_a);
     module.def("power_law", &power_law, "factor"_a, "size"_a, "exponent"_a, "level"_a, "contacts"_a);
     module.def("system", &system_of, nb::kw_only(), "jacobian"_a, "omega_squared"_a, "damping"_a, "weights"_a,
                "mesh_damping"_a, "lower"_a, "upper"_a, "leverage"_a, "law"_a, "error"_a, "error_kind"_a,

@@ -80,10 +80,14 @@ struct SingleRay {
     void meet_flank() {
         const Index nearest = nearest_sample(ray, search_radius, sample);
         if (nearest < 0) return;
-        const FlankHit found =
-            cut_flank(blank, ray, sample.rolls[nearest], sample.psis[nearest], search_radius);
+        FlankHit found = from_sample(nearest);
+        if (!found.converged && sample.inner[nearest]) {
+            // Where the ray leaves the flank over an edge, it may pass that edge beyond the search radius.
+            const Index closer = nearest_sample(ray, search_radius + sample.spacing, sample);
+            if (closer != nearest) found = from_sample(closer);
+            lost += !found.converged && sample.inner[closer];
+        }
         if (std::fabs(found.continued) < search_radius) continued = found.continued;
-        lost += !found.converged && sample.inner[nearest];
         hit = found.hit;
         part = FLANK;
     }
@@ -100,6 +104,10 @@ struct SingleRay {
     }
 
   private:
+    FlankHit from_sample(Index k) const {
+        return cut_flank(blank, ray, sample.rolls[k], sample.psis[k], search_radius);
+    }
+
     void meet_tip_land() {
         hit = cut_land(blank, ray, search_radius,
                        [&](double radius) { return Rise{blank.tip.at(radius), blank.tip.slope}; });

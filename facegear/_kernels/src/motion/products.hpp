@@ -5,6 +5,8 @@
 // blocks: modes of a body are felt by that body's flanks alone and couple with those of their own order only.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "motion/layout.hpp"
@@ -64,6 +66,19 @@ inline Blocks blocks_from(const std::vector<char>& touches, Index rows, Index wi
     return result;
 }
 
+// A vector joins a band if that brings at most one strip of zeros for this many columns into it.
+constexpr Index band_zeros = 4;
+
+// Vectors of coordinates next to each other that are coupled with the same columns: each factor is read once
+// for all of them, and their sums do not wait for each other.
+struct RowBand {
+    static constexpr int most = 4; // as many as the registers hold with their sums
+
+    Index first, vectors;
+    Index columns, count; // in the list of columns
+    Index strips;         // of W rows and one column, column by column
+};
+
 template <int W>
 class Products<Coordinates<W>> {
     using L = Coordinates<W>;
@@ -89,21 +104,21 @@ class Products<Coordinates<W>> {
                 by_contact_.one(row, k, 0) = by_coordinate_.one(k, row, 0) = system.jacobian[row * n_ + k];
         for (Index row = 0; row < system.rubbing(); ++row)
             for (Index k = 0; k < n_; ++k) along_.one(row, k, 0) = system.rubbing_directions[row * n_ + k];
-        for (std::size_t strip = 0; strip < strip_columns_.size(); ++strip) {
-            const Index column = strip_columns_[strip];
-            for (Index lane = 0; lane < W; ++lane) {
-                const Index k = strip_rows_[strip] * W + lane;
-                strips_[strip * W + lane] = k >= n_ ? 0.0
-                                            : column < n_
-                                                ? system.by_velocity(k, column, machine.frequency)
-                                                : system.by_displacement(k, column - n_, machine.frequency);
+        for (const RowBand& band : bands_) {
+            double* strip = strips_ + band.strips * W;
+            for (Index at = 0; at < band.count; ++at) {
+                const Index column = band_columns_[band.columns + at];
+                for (Index k = band.first * W; k < (band.first + band.vectors) * W; ++k)
+                    *strip++ = k >= n_       ? 0.0
+                               : column < n_ ? system.by_velocity(k, column, machine.frequency)
+                                             : system.by_displacement(k, column - n_, machine.frequency);
             }
         }
     }
 
     // A row of the deflections, G y - e; of a disturbance G y.
     void deflect(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
-        if (coupled_ && W == 4) {
+        if (by_tiles_) {
             deflect_by_tiles(y, row, error, deflection);
             return;
         }
@@ -137,8 +152,20 @@ class Products<Coordinates<W>> {
             const Index count = pressing_starts_[block + 1] - pressing_starts_[block],
                         last = blocks_.last[block];
             Index b = blocks_.first[block];
-            for (; b + 3 <= last; b += 3) push_columns<3>(rows, count, force.data, y.row(row), b);
-            for (; b < last; ++b) push_columns<1>(rows, count, force.data, y.row(row), b);
+            for (; b + 4 < last; b += 3) push_columns<3>(rows, count, force.data, y.row(row), b);
+            switch (last - b) {
+                case 4:
+                    push_columns<4>(rows, count, force.data, y.row(row), b);
+                    break;
+                case 3:
+                    push_columns<3>(rows, count, force.data, y.row(row), b);
+                    break;
+                case 2:
+                    push_columns<2>(rows, count, force.data, y.row(row), b);
+                    break;
+                default:
+                    push_columns<1>(rows, count, force.data, y.row(row), b);
+            }
         }
     }
 
@@ -151,17 +178,21 @@ class Products<Coordinates<W>> {
         double* places = factors_ + n_; // strips are numbered by the n coordinates twice
         for (Index b = 0; b < y.width; ++b) (by_place * y.at(i, b)).store(places + b * W);
         store_rates(y, i + 1, by_rate, rates);
-        for (Index b = 0; b < y.width; ++b) {
-            V even = y.at(i + 2, b), odd = V::splat(0.0);
-            Index strip = strip_starts_[b];
-            for (; strip + 1 < strip_starts_[b + 1]; strip += 2) {
-                even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
-                odd =
-                    V::load(strips_ + (strip + 1) * W) * V::splat(factors_[strip_columns_[strip + 1]]) + odd;
+        for (const RowBand& band : bands_) {
+            double* out = y.row(i + 2) + band.first * W;
+            switch (band.vectors) {
+                case 1:
+                    couple_band<1>(band, out);
+                    break;
+                case 2:
+                    couple_band<2>(band, out);
+                    break;
+                case 3:
+                    couple_band<3>(band, out);
+                    break;
+                default:
+                    couple_band<RowBand::most>(band, out);
             }
-            if (strip < strip_starts_[b + 1])
-                even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
-            y.put(i + 2, b, even + odd);
         }
     }
 
@@ -244,6 +275,21 @@ class Products<Coordinates<W>> {
         sums.store(out + b * W);
     }
 
+    template <int Count>
+    void couple_band(const RowBand& band, double* out) const {
+        Sums<V, Count> sums;
+        sums.begin(out);
+        const Index* columns = band_columns_.data() + band.columns;
+        const double* strip = strips_ + band.strips * W;
+        Index at = 0;
+        for (; at + 1 < band.count; at += 2, strip += 2 * Count * W) {
+            sums.add_even(strip, V::splat(factors_[columns[at]]));
+            sums.add_odd(strip + Count * W, V::splat(factors_[columns[at + 1]]));
+        }
+        if (at < band.count) sums.add_even(strip, V::splat(factors_[columns[at]]));
+        sums.store(out);
+    }
+
     void deflect_by_tiles(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
         if constexpr (W == 4) {
             for (Index k = 0; k < deflection.width; ++k) {
@@ -276,6 +322,8 @@ class Products<Coordinates<W>> {
             for (Index e = system.by_contact.starts[row]; e < system.by_contact.starts[row + 1]; ++e)
                 touches[row * width + system.by_contact.columns[e] / W] = 1;
         blocks_ = blocks_from(touches, vectors * W, width, W);
+        // Tiles save what is zero; without zeros the sums over coordinates are faster.
+        by_tiles_ = W == 4 && static_cast<Index>(blocks_.columns.size()) < vectors * width;
         pressing_.resize(blocks_.rows.size());
         pressing_starts_.resize(blocks_.starts.size());
         for (Index k = 0; k < width; ++k) {
@@ -283,24 +331,51 @@ class Products<Coordinates<W>> {
             for (Index row = k * W; row < std::min((k + 1) * W, n_); ++row)
                 for (Index e = system.coupled_rows.starts[row]; e < system.coupled_rows.starts[row + 1]; ++e)
                     kept[system.coupled_rows.columns[e]] = 1;
-            for (Index column = 0; column < 2 * n_; ++column) {
-                if (!kept[column]) continue;
-                strip_columns_.push_back(column);
-                strip_rows_.push_back(k);
-            }
-            strip_starts_.push_back(static_cast<Index>(strip_columns_.size()));
+            std::vector<Index> columns;
+            for (Index column = 0; column < 2 * n_; ++column)
+                if (kept[column]) columns.push_back(column);
+            add_to_bands(k, columns);
         }
-        strips_ = room_.numbers(static_cast<Index>(strip_columns_.size()) * W);
+        Index strips = 0;
+        for (RowBand& band : bands_) {
+            band.strips = strips;
+            strips += band.vectors * band.count;
+        }
+        strips_ = room_.numbers(strips * W);
         factors_ = room_.numbers(2 * n_ + W);
+    }
+
+    // Append vector k to the last band where that brings few zeros into it and has room, else to a new one.
+    void add_to_bands(Index k, const std::vector<Index>& columns) {
+        if (columns.empty()) return;
+        const auto own = static_cast<Index>(columns.size());
+        if (!bands_.empty() && bands_.back().first + bands_.back().vectors == k &&
+            bands_.back().vectors < RowBand::most) {
+            RowBand& last = bands_.back();
+            std::vector<Index> both;
+            std::set_union(band_columns_.begin() + last.columns, band_columns_.end(), columns.begin(),
+                           columns.end(), std::back_inserter(both));
+            const auto count = static_cast<Index>(both.size());
+            if (band_zeros * ((last.vectors + 1) * count - last.vectors * last.count - own) <= count) {
+                band_columns_.resize(last.columns);
+                band_columns_.insert(band_columns_.end(), both.begin(), both.end());
+                last.count = count;
+                ++last.vectors;
+                return;
+            }
+        }
+        bands_.push_back({k, 1, static_cast<Index>(band_columns_.size()), own, 0});
+        band_columns_.insert(band_columns_.end(), columns.begin(), columns.end());
     }
 
     Room room_;
     Index n_, m_, contacts_;
     Table<L> by_coordinate_, by_contact_, along_;
-    bool coupled_;
+    bool coupled_, by_tiles_ = false;
     Blocks blocks_;
     std::vector<Index> pressing_, pressing_starts_;
-    std::vector<Index> strip_starts_{0}, strip_columns_, strip_rows_; // strips of W rows and one column
+    std::vector<RowBand> bands_;
+    std::vector<Index> band_columns_;
     double* strips_ = nullptr;
     double* factors_ = nullptr;
 };

@@ -60,7 +60,8 @@ struct Coupling {
 struct System {
     Index n = 0, m = 0;
     Index contacts =
-        0; // rows that are meshes or flanks; three for each ring follow: x, y, and the way past the rim
+        0; // rows that are meshes or flanks; three for each ring follow: x, y, and the way past the rim; then
+           // the places of the contacts in the mesh cycle where a law has them move, rad
     Index pairs = 0; // meshes whose two flanks stand at j and j + pairs; 0 where every mesh stands for itself
     bool damping_when_open = true, push_only = false;
     double scale = 1.0;                                  // the length that tolerances mean, m

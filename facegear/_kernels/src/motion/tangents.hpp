@@ -2,7 +2,7 @@
 //
 // A single one goes in the vectors that the motion itself uses. Many of one machine go in blocks, side by
 // side along the innermost axis: then every entry of G is read once for all of them, and those that are zero
-// are left out. With rings, friction, or coordinates coupled beside the meshes they go one by one.
+// are left out. With rings or friction they go one by one.
 #pragma once
 
 #include <algorithm>
@@ -133,6 +133,7 @@ class Block {
     template <class L, class Law>
     void move(Work<L, Law>& w, Index order, Tangents<L> tangents, Index first) {
         const System& system = *w.entered[0].system;
+        if (system.coupled) take_coupling(w.entered[0]);
         const Index own = std::min(count, tangents.columns - first);
         for (Index row = 0; row < 2; ++row) {
             for (Index k = 0; k < n_; ++k)
@@ -154,6 +155,20 @@ class Block {
     }
 
   private:
+    // Take the coupling at the frequency of a machine, which changes between two runs alone.
+    void take_coupling(const Machine& machine) {
+        if (entered_.system == machine.system && entered_.frequency == machine.frequency) return;
+        entered_ = machine;
+        const System& system = *machine.system;
+        coupling_ = system.coupled_rows;
+        for (Index k = 0; k < n_; ++k)
+            for (Index e = coupling_.starts[k]; e < coupling_.starts[k + 1]; ++e) {
+                const Index column = coupling_.columns[e];
+                coupling_.values[e] = column < n_ ? system.by_velocity(k, column, machine.frequency)
+                                                  : system.by_displacement(k, column - n_, machine.frequency);
+            }
+    }
+
     void deflect(const Sparse& matrix, Index row) {
         for (Index contact = 0; contact < m_; ++contact) {
             Sums<V, vectors> sums;
@@ -198,7 +213,20 @@ class Block {
                          V::splat(factor * static_cast<double>(i + 1) * w.damping.one(0, k, 0)));
             for (Index e = matrix.starts[k]; e < matrix.starts[k + 1]; ++e)
                 sums.add_even(force_ + matrix.columns[e] * width, V::splat(matrix.values[e]));
+            if (system.coupled) couple(sums, k, i);
             sums.store(y_ + ((i + 2) * n_ + k) * width);
+        }
+    }
+
+    // Add what couples coordinate k with others beside the meshes, from the two rows before.
+    void couple(Sums<V, vectors>& sums, Index k, Index i) const {
+        const double by_rate = -1.0 / static_cast<double>(i + 2);
+        const double by_place = -1.0 / static_cast<double>((i + 1) * (i + 2));
+        for (Index e = coupling_.starts[k]; e < coupling_.starts[k + 1]; ++e) {
+            const Index column = coupling_.columns[e];
+            const bool is_rate = column < n_;
+            const double* of_column = y_ + (is_rate ? (i + 1) * n_ + column : i * n_ + column - n_) * width;
+            sums.add_odd(of_column, V::splat((is_rate ? by_rate : by_place) * coupling_.values[e]));
         }
     }
 
@@ -221,13 +249,15 @@ class Block {
     double* y_;
     double* deflection_;
     double* force_;
+    Machine entered_;
+    Sparse coupling_; // as System::coupled_rows, with values
 };
 
 // Move disturbances over the steps whose polynomials `w` holds. block: null where they go one by one.
 template <class L, class Law>
 void move_tangents(Work<L, Law>& w, Tangents<L> tangents, Block<L::lanes>* block) {
-    const bool plain = w.rings.count() == 0 && w.friction.count() == 0 && !w.shape->coupled;
-    const Index order = plain ? order_needed(w) : w.order;
+    const bool plain = w.rings.count() == 0 && w.friction.count() == 0 && !Law::moves;
+    const Index order = plain && !w.shape->coupled ? order_needed(w) : w.order;
     if (block != nullptr && plain && tangents.columns > 1) {
         for (Index first = 0; first < tangents.columns; first += Block<L::lanes>::count)
             block->move(w, order, tangents, first);

@@ -78,8 +78,13 @@ void push_contacts(Work<L, Law>& w, Table<L> deflection, Index i, bool disturbed
             b < of_law &&
             (L::machines == 1 || positive_lanes(kept ? absolute(w.side.at(0, b)) : w.active.at(0, b)));
         if (touching) total = disturbed ? product(slope, deflection, i, b) : w.law.force(deflection, i, b);
+        if constexpr (Law::moves)
+            if (touching && disturbed) total = total + w.law.disturbed_force(deflection, i, b);
         push(b, total);
     }
+    if constexpr (Law::moves)
+        w.law.push_places(deflection, w.active, i, -1.0 / static_cast<double>((i + 1) * (i + 2)), disturbed,
+                          w.force);
 }
 
 // Fill rows first + 2 to last + 1 of y and of deflection from the rows before them. Row 0 of the deflections

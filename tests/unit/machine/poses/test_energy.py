@@ -106,20 +106,21 @@ def tilting_machine(places, sides=(Side.LOWER, Side.UPPER)):
 
 def bending_machine(places=None, sides=(Side.LOWER, Side.UPPER)):
     """Gears of one mode and the compliance of four orders, whose rims lean; the concentric machine."""
-    static_part, fall = np.array([[2e-9, 2e-10], [2e-10, 5e-10]]), 1.0 + np.arange(4.0)
+    static_part, fall = np.diag([2e-9, 5e-10, 0.0]), 1.0 + np.arange(4.0)
+    static_part[[0, 1], [1, 0]] = 2e-10
     body = ReducedBody(
         order=np.array([2]),
         frequency=np.array([2000.0]),
         coriolis=np.zeros((1, 1)),
         stiffening=np.zeros((1, 1)),
-        mesh=np.array([[0.3], [0.05]]),
+        mesh=np.array([[0.3], [0.05], [0.0]]),
         hub=np.zeros((2, 1)),
         hub_spin=np.zeros(1),
         round=np.zeros(1),
         static=static_part / fall[:, None, None],
         damping_ratio=np.array(0.002),
         slope=np.array([1.2]),
-        leaning=np.array([6e-9, 1e-9, 4e-8]) / fall[:, None],
+        leaning=np.array([6e-9, 1e-9, 0.0, 4e-8]) / fall[:, None],
     )
     if places is None:
         return gear_bodies.gearbox(body)

@@ -18,7 +18,7 @@ from facegear.machine.poses.fixed_point import operating_pose
 from facegear.machine.poses.surface import PoseSurface
 from facegear.machine.static_gears import at_rest, posed_rows, static_rows
 from facegear.parts.body_mesh import body_mesh
-from facegear.parts.gear_body import flank_direction, mean_compliance, reduced_body, slope_compliance
+from facegear.parts.gear_body import mean_compliance, reduced_body
 from facegear.parts.matrices import body_matrices
 from facegear.parts.modes import held_solver, order_modes
 from facegear.parts.reduced_body import ReducedBody
@@ -47,9 +47,9 @@ def matrices():
 def body() -> ReducedBody:
     """Its compliance of a few orders, and the modes of one nodal diameter."""
     solvers = [held_solver(matrices(), order) for order in range(ORDERS)]
-    parts = list(enumerate(solvers))
-    static = np.stack([PATCH.compliance(n, mean_compliance(matrices(), solve)) for n, solve in parts])
-    leaning = np.stack([PATCH.leaning(n, slope_compliance(matrices(), solve)[0]) for n, solve in parts])
+    below = [mean_compliance(matrices(), solve) for solve in solvers]
+    static = np.stack([PATCH.compliance(n, means) for n, means in enumerate(below)])
+    leaning = np.stack([PATCH.leaning(n, means[-1]) for n, means in enumerate(below)])
     solved = SimpleNamespace(
         orders=tuple(order_modes(matrices(), n, np.inf, solvers[n], 1) for n in (0, 1)),
         section=gear_bodies.section(),
@@ -61,7 +61,7 @@ def body() -> ReducedBody:
 
 def heights(nodes, order, direction):
     """Complex heights of nodes by a unit flank force at angle 0 with an axial and a tangential part."""
-    means, factor = np.stack(matrices().on_teeth), PATCH.factor(order)
+    means, factor = matrices().on_teeth, PATCH.factor(order)
     solve = held_solver(matrices(), order)
     axial, around = direction[0] * means[0], direction[1] * (means[1] + order * PATCH.height * means[2])
     moved = solve(factor * np.stack([axial, around], axis=1))[2::3][nodes]
@@ -86,7 +86,7 @@ def test_slope_of_the_rim_below_a_mesh_is_that_of_the_nodes_when_another_mesh_is
     nodes = nodes[np.argsort(r[nodes])]
     fine = np.linspace(0.250, 0.275, 400)
     for back in (False, True):
-        waves = [heights(nodes, n, flank_direction(ANGLE, back)) for n in range(ORDERS)]
+        waves = [heights(nodes, n, gear_bodies.flank_direction(ANGLE, back)) for n in range(ORDERS)]
         known = np.zeros((meshes, meshes))
         for first, second in np.ndindex(known.shape):
             apart = sign * (layout.angles[first] - layout.angles[second])
@@ -103,7 +103,7 @@ def test_slopes_are_those_of_the_flanks_own_answers_with_more_columns():
     layout = make_layout(kinematics=GEOMETRIC)
     plain, (flanks, slopes) = static_rows(body(), layout, 1), posed_rows(body(), layout, 1)
     np.testing.assert_allclose(flanks @ flanks.T, plain @ plain.T, rtol=1e-9, atol=1e-18)
-    np.testing.assert_allclose((slopes[0] ** 2).sum(axis=1), body().leaning[:, 2].sum(), rtol=1e-9)
+    np.testing.assert_allclose((slopes[0] ** 2).sum(axis=1), body().leaning[:, -1].sum(), rtol=1e-9)
 
 
 def rocking_machine():
@@ -116,16 +116,16 @@ def rocking_machine():
 
 def stiff_rims_on_springs(radius):
     """Return the machine with bodies whose only wave is that tilt."""
-    layout, way = make_layout(gear_bearing=2e8, kinematics=GEOMETRIC), np.array([radius, 0.0, 1.0])
-    static, leaning = np.zeros((2, 2, 2)), np.zeros((2, 3))
-    static[1] = np.outer(way[:2], way[:2]) / TILTING_STIFFNESS
+    layout, way = make_layout(gear_bearing=2e8, kinematics=GEOMETRIC), np.array([radius, 0.0, 0.0, 1.0])
+    static, leaning = np.zeros((2, 3, 3)), np.zeros((2, 4))
+    static[1] = np.outer(way[:3], way[:3]) / TILTING_STIFFNESS
     leaning[1] = way / TILTING_STIFFNESS
     own = ReducedBody(
         order=np.array([1]),
         frequency=np.array([1000.0]),
         coriolis=np.zeros((1, 1)),
         stiffening=np.zeros((1, 1)),
-        mesh=way[:2, None],
+        mesh=way[:3, None],
         hub=np.zeros((2, 1)),
         hub_spin=np.zeros(1),
         round=np.zeros(1),

@@ -14,8 +14,8 @@ from facegear.build.tooth_pair import pair_design
 from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Role, Tilt
 from facegear.machine.linear_model import LinearModel, lumped_model
-from facegear.machine.poses.displaced_pair import body_motion, in_mesh_frame, pose_of
-from facegear.machine.poses.mesh_poses import mesh_poses, pose_rows
+from facegear.machine.poses.displaced_pair import body_motion, pose_of
+from facegear.machine.poses.mesh_poses import mesh_poses, pose_rows, to_mesh_frame
 from facegear.teeth.conjugate import conjugate_contact
 from facegear.teeth.design import AssemblyErrors
 from facegear.teeth.placement import body_rotation, mirror_design, pinion_to_gear
@@ -47,12 +47,13 @@ def motions(side, design, size=1.0, below=BELOW):
     sign, at = SIDES[side], np.radians(30.0)
     tangent, away = np.array([np.cos(at), np.sin(at)]), np.array([np.sin(at), -np.cos(at)])
     shift, turn = (size * np.array(part) for part in MOTION["pinion"])
-    pinion = body_motion(shift, turn, (0.0, 0.0, design.mean_radius))
+    frame = to_mesh_frame(sign)
+    pinion = body_motion(frame @ shift, frame @ turn, frame @ [0.0, 0.0, design.mean_radius])
     shift, tilt = (size * np.array(part) for part in MOTION["gear"])
     height = sign * (design.pinion_pitch_radius + below)
     moved = (shift[:2] @ tangent, shift[2], shift[:2] @ away)
-    gear = body_motion(moved, (tilt @ tangent, 0.0, tilt @ away), (0.0, height, 0.0))
-    return in_mesh_frame(pinion, sign), in_mesh_frame(gear, sign)
+    turn = frame @ [tilt @ tangent, 0.0, tilt @ away]
+    return pinion, body_motion(frame @ moved, turn, frame @ [0.0, height, 0.0])
 
 
 def leaning(layout):

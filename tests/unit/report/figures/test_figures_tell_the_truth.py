@@ -8,13 +8,15 @@ from contact_patterns import line_arrays
 from matplotlib.text import Text
 
 from facegear.contact.pattern import LTCA_COLUMNS, SHARES
+from facegear.machine.modes import ModeClass
 from facegear.report.figures.campbell import campbell
 from facegear.report.figures.comparison import curves_compared
 from facegear.report.figures.contact import close_pitch, contact_pattern
 from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
+from facegear.report.figures.marks import Bars
 from facegear.report.figures.motion import deflections, drawn_machine
-from facegear.report.figures.sharing import sharing_figure
+from facegear.report.figures.sharing import bearing_figure, sharing_figure
 from facegear.report.figures.teeth import separation
 
 
@@ -53,6 +55,40 @@ def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_ve
     turned.loc[:47, "amplitude_m_or_rad"] = (angle @ stacked).ravel()
     assert np.allclose(amplitudes(shapes, equal), amplitudes(turned, equal))
     assert "(x 6)" in mode_shapes(frequencies, shapes).panels[0].title
+
+
+def test_tilts_are_drawn_beside_the_other_motions_of_their_body():
+    """They stood behind all bodies, without a name."""
+    names = [(body, dof) for body in ("pinion", "gear") for dof in ("x", "y", "z", "theta")]
+    names += [("pinion", "tilt_x"), ("pinion", "tilt_y")]
+    rows = [(1, body, dof, 0.1 * number) for number, (body, dof) in enumerate(names, start=1)]
+    shapes = pd.DataFrame(rows, columns=["order", "body", "dof", "amplitude_m_or_rad"])
+    columns = {
+        "order": [1],
+        "frequency_hz": [9.0],
+        "class": ["pinion"],
+        "symbols": ["T"],
+        "multiplicity": [1],
+    }
+    (panel,) = mode_shapes(pd.DataFrame(columns).assign(**{"class": "pinion"}), shapes).panels
+    assert panel.x.ticks == [(2.5, "pinion"), (7.5, "gear")]
+    (bars,) = (mark for mark in panel.marks if isinstance(mark, Bars))
+    assert np.allclose(10.0 * bars.lengths, [1, 2, 3, 4, 9, 10, 5, 6, 7, 8])
+    assert "further motions" in panel.x.name
+
+
+def test_only_the_lowest_kinds_of_many_modes_are_drawn():
+    """A machine on a casing got 60 panels, 6000 pixels of a page."""
+    frequencies = pd.DataFrame(
+        {
+            "order": range(1, 61),
+            "class": "casing",
+            "symbols": [f"kind {i}" for i in range(60)],
+            "multiplicity": 1,
+        }
+    )
+    modes = typical_modes(frequencies.assign(**{"class": "casing"}))
+    assert modes == [(order,) for order in range(1, 13)]
 
 
 def test_a_contact_curve_ends_where_the_next_pitch_begins():
@@ -196,11 +232,11 @@ def test_every_pinion_has_a_panel_where_parts_or_torques_differ(singled, torque,
 
 
 def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
-    """The longest label was cut off at the right, and the first column at the left."""
+    """The longest label was cut off at the right, the first column at the left; casings had no colour."""
     frequencies = pd.DataFrame(
         {
-            "frequency_hz": [700.0, 2200.0, 5600.0],
-            "class": ["pinion", "face gear", "pinion coupled face gear"],
+            "frequency_hz": [700.0, 2200.0, 5600.0, 6100.0],
+            "class": [str(kind) for kind in ModeClass if kind is not ModeClass.RIGID],
         }
     )
     marks = pd.DataFrame({"order": [1.0, 0.3], "resonance": [1, 2], "speed_rpm": [2000.0, 9000.0]})
@@ -210,6 +246,21 @@ def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
     figure.canvas.draw()
     (legend,) = figure.legends
     box = legend.get_window_extent()
-    assert len(legend.texts) == 9
+    assert len(legend.texts) == 10
     assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
     plt.close(figure)
+
+
+def test_load_sharing_over_bearings_has_no_curve_of_kinematics_that_were_not_solved():
+    """Machines with other than spur teeth know no printed kinematics; the legend named their curves."""
+    rows = [
+        (kinematics, role, stiffness, kind, 1.2)
+        for kinematics in ("geometric", "printed")
+        for role in ("inputs", "idlers")
+        for kind in ("inputs", "idlers")
+        for stiffness in (1e7, 1e8)
+    ]
+    scan = pd.DataFrame(rows, columns=["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"])
+    geometric = scan[scan["kinematics"] == "geometric"]
+    for table, count in ((scan, 4), (geometric, 2)):
+        assert [len(panel.marks) for panel in bearing_figure(table).panels] == [count, count]

@@ -2,7 +2,8 @@
 //
 // A law offers, beside its numbers: `curved`, whether the slope depends on the amount; `ahead_by_forces`,
 // whether force_ahead needs all coefficients of the forces; `by_mesh`, whether a block may hold the flank of
-// a mesh that touches (touching_flanks.hpp); `breaks`; `contacts()`; `terms()`, the harmonics
+// a mesh that touches (touching_flanks.hpp); `moves`, whether meshes have rows for their places (moving.hpp);
+// `breaks`; `contacts()`; `terms()`, the harmonics
 // with the mean; `alike(other)`, whether they may share scratch space; and Motion<L> with
 //     make_room(terms)                                of series of up to so many terms
 //     enter(law, factor, machine)                     take the numbers of a machine, forces times the factor
@@ -21,11 +22,12 @@
 
 #include "motion/laws/linear.hpp"
 #include "motion/laws/load_dependent.hpp"
+#include "motion/laws/moving.hpp"
 #include "motion/laws/power.hpp"
 
 namespace facegear::motion {
 
 using Law = std::variant<std::shared_ptr<const LinearLaw>, std::shared_ptr<const LoadDependentLaw>,
-                         std::shared_ptr<const PowerLaw>>;
+                         std::shared_ptr<const PowerLaw>, std::shared_ptr<const MovingLaw>>;
 
 } // namespace facegear::motion

@@ -15,7 +15,7 @@
 namespace facegear::motion {
 
 struct LinearLaw {
-    static constexpr bool curved = false, ahead_by_forces = false, by_mesh = false;
+    static constexpr bool curved = false, ahead_by_forces = false, by_mesh = false, moves = false;
 
     FourierRows fourier;     // k of each kind, N/m
     std::vector<Index> kind; // of each contact

@@ -13,7 +13,7 @@
 namespace facegear::motion {
 
 struct LoadDependentLaw {
-    static constexpr bool curved = true, ahead_by_forces = false, by_mesh = true;
+    static constexpr bool curved = true, ahead_by_forces = false, by_mesh = true, moves = false;
 
     Index kinds = 0, level_count = 0, harmonics = 1; // harmonics with the mean
     std::vector<double>

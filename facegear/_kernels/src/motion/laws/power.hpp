@@ -16,7 +16,7 @@
 namespace facegear::motion {
 
 struct PowerLaw {
-    static constexpr bool curved = true, ahead_by_forces = true, by_mesh = false;
+    static constexpr bool curved = true, ahead_by_forces = true, by_mesh = false, moves = false;
 
     FourierRows factor; // of all contacts: one kind
     double size = 1.0, exponent = 1.5, level = 1e-3;
