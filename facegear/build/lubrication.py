@@ -82,7 +82,7 @@ def contacts_of(
     """
     arrays, numbers = pressure_of_flanks(pressure)
     unloaded_error = dict(zip(ltca["position"], 1e-6 * ltca["unloaded_ste_um"], strict=True))
-    contacts = []
+    contacts: list[tuple[LoadedContact, ...]] = []
     for contact_arrays, design in zip(arrays, designs_of_contacts(section, len(arrays)), strict=True):
         if contacts:
             unloaded_error = dict(
