@@ -30,7 +30,6 @@ SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("rating", "dynamic_root_stress", "stress_over_speed"), ALL_KINDS),
     "lubrication": ("shaft_angle_deg",),  # the excitation's part along the pinion's axis is that along y
     **dict.fromkeys(("machine_loss", "friction_in_motion"), ALL_KINDS),
-    "sharing_map": ALL_KINDS,
 }
 """Keys of section `tooth_pair` that a stage cannot take yet, by its name."""
 
