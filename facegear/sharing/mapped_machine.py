@@ -24,42 +24,44 @@ NO_PUSH = 1e-9
 
 @dataclass(frozen=True)
 class PathWrenches:
-    """What a unit force of an idler's mesh of a group does, when its other mesh balances its torque.
+    """Effects of a unit force of an idler's mesh of a group, whose torque its second mesh balances.
 
     Attributes
     ----------
-    own, other
-        Lines of contact of the flanks that work: of the mesh of the group, and of the other one.
+    group_frame, second_frame
+        Lines of contact of the flanks that work: of the mesh of the group, and of the second one.
     """
 
-    own: FlankFrame
-    other: FlankFrame
+    group_frame: FlankFrame
+    second_frame: FlankFrame
 
     @property
     def arm(self) -> float:
         """Torque on the pinion over the force of the group's mesh, over that of a drive flank."""
-        return abs(self.own.arm)
+        return abs(self.group_frame.arm)
 
     @property
-    def other_force(self) -> float:
-        """Force of the other mesh."""
-        return abs(self.own.arm / self.other.arm)
+    def second_force(self) -> float:
+        """Force of the second mesh."""
+        return abs(self.group_frame.arm / self.second_frame.arm)
 
     @property
     def on_pinion(self) -> Array:
         """Force of both meshes along the pinion's x, y, z, (3,), against the unit force."""
-        return np.array(self.own.normal) + self.other_force * np.array(self.other.normal)
+        return np.array(self.group_frame.normal) + self.second_force * np.array(self.second_frame.normal)
 
     @property
     def on_gears(self) -> tuple[float, float]:
-        """Forces on the gear of the group's mesh and on the other gear, square to their axis."""
-        own, other = (float(np.hypot(*frame.gear_normal[::2])) for frame in (self.own, self.other))
-        return own, self.other_force * other
+        """Forces on the gear of the group's mesh and on the second gear, square to their axis."""
+        first, second = (
+            float(np.hypot(*frame.gear_normal[::2])) for frame in (self.group_frame, self.second_frame)
+        )
+        return first, self.second_force * second
 
     @property
     def meshes(self) -> float:
         """Compliance of both meshes over that of two meshes with a unit force."""
-        return 0.5 * (1.0 + self.other_force**2)
+        return 0.5 * (1.0 + self.second_force**2)
 
 
 class MappedMachine:
@@ -318,8 +320,8 @@ class MappedMachine:
         force `push` (3,) along x, y, z does; directions without force need no bearing.
         """
         bearing = np.array(self.machine.layout.pinions[self.pinions(group)[0]].body.bearing)
-        pushed = np.abs(push) > NO_PUSH
-        return float(np.sqrt((push[pushed] ** 2 * bearing[0] / bearing[pushed]).sum()))
+        has_push = np.abs(push) > NO_PUSH
+        return float(np.sqrt((push[has_push] ** 2 * bearing[0] / bearing[has_push]).sum()))
 
     def deviation(self, group: LoadGroup, options: MapOptions) -> float:
         """Return the standard deviation of the lateness of a path.
@@ -378,7 +380,7 @@ class MappedMachine:
         """
         layout = self.machine.layout
         gear = layout.meshes[group.meshes[0]][1]
-        bearings = [0.5 * (each.body.bearing[0] + each.body.bearing[1]) for each in layout.gears]
+        bearings = [0.5 * (member.body.bearing[0] + member.body.bearing[1]) for member in layout.gears]
         stiffness, pushes = self.path_stiffness(group), self.path_wrenches(group).on_gears
         return plane_freedom(len(group.meshes), stiffness, (bearings[gear], bearings[1 - gear]), pushes)
 

@@ -188,13 +188,13 @@ def _rim_parts(layout: Layout, kind: ToothKind, gear: int, middle: float) -> Arr
     pinion's face.
     """
     axes, sign = layout.axes(gear), layout.gears[gear].sign
-    place = middle_place(middle, axes)
-    radius, up = np.hypot(*place[:2]), np.array([0.0, 0.0, 1.0])
-    outwards = np.append(place[:2] / radius, 0.0)
+    middle_point = middle_place(middle, axes)
+    radius, up = np.hypot(*middle_point[:2]), np.array([0.0, 0.0, 1.0])
+    outwards = np.append(middle_point[:2] / radius, 0.0)
     around = sign * np.cross(outwards, up)
     turns = np.cross(np.stack([outwards, around / radius, 0.0 * up, 0.0 * up]), up)
     motions = np.stack([0.0 * up, 0.0 * up, up, outwards])
-    motions += np.cross(turns, (place[2] + kind.pitch_height(sign)) * up)
+    motions += np.cross(turns, (middle_point[2] + kind.pitch_height(sign)) * up)
     by_shift, by_turn = _parts(axes, middle)
     return -by_shift @ motions.T - by_turn @ turns.T
 
