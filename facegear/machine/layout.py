@@ -10,7 +10,6 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
 from facegear.machine.mesh_frames import FlankFrame, ToothKind, spur_frames
-from facegear.teeth.tooth_family import RelativeMotion
 
 DOF_PER_BODY = 4
 """Coordinates of each body: x, y, z and rotation about its own axis."""
@@ -278,23 +277,6 @@ class Layout:
         flanks have one pressure angle.
         """
         return -self.flank_frames[0][1].arm
-
-    def axes(self, gear: int) -> RelativeMotion:
-        """Return the motion of the pinions against a gear, in the mesh frame of that gear.
-
-        Parameters
-        ----------
-        gear : int
-            Number of the gear.
-
-        Returns
-        -------
-        RelativeMotion
-            Ratio, shaft angle and offset.
-        """
-        if self.kind is not None:
-            return self.kind.motion(self.gears[gear].sign)
-        return RelativeMotion(self.pinion_teeth / self.gear_teeth)
 
     def mesh_torques(self, forces: Array) -> Array:
         """Return the torque that forces of the meshes put on the pinions.

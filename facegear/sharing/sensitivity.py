@@ -15,6 +15,7 @@ from facegear.machine.imperfections import Imperfections, Runout, perfect
 from facegear.machine.kinematics import KINEMATICS
 from facegear.machine.layout import Kinematics, Layout, Role
 from facegear.machine.machine import Machine
+from facegear.machine.poses.mesh_poses import ForceDirections
 from facegear.machine.torques import balanced_torques
 from facegear.sharing.even_shares import even_shares
 from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
@@ -249,8 +250,16 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
         line = _rolling_alone(line, new_layout) if keeps_rolling else None
     elif line is not None:
         line = replace(line, layout=new_layout)
+    directions = machine.directions
+    if isinstance(directions, ForceDirections):
+        directions = replace(directions, layout=new_layout)
     machine_with_layout = replace(
-        machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=line
+        machine,
+        layout=new_layout,
+        torques=torques,
+        imperfections=errors,
+        drive_line=line,
+        directions=directions,
     )
     if kinematics is not layout.kinematics:
         return replace(machine_with_layout, bodies=None, softening=None, casing=None)

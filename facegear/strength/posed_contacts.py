@@ -396,8 +396,11 @@ def posed_contacts(
                 float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row])
             )
         rest = ContactPose(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
-        own, end = surface.of_flank(gear_of(name, gears), other_flank), contact_poses[name, other_flank]
-        factors = {stress: stress_ratio(own, stress, rest, end) for stress in STRESSES}
+        flank_surface, end = (
+            surface.of_flank(gear_of(name, gears), other_flank),
+            contact_poses[name, other_flank],
+        )
+        factors = {stress: stress_ratio(flank_surface, stress, rest, end) for stress in STRESSES}
         at_rest = contacts_of(name, assembled_contacts, gears)[other_flank]
         contacts[name] = {
             loaded_flank: contacts_by_number[int(arrays["contact"][row])],

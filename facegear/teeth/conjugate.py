@@ -292,12 +292,28 @@ def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | 
     return None if line is None else _contact_of(line)
 
 
+def pitch_roll(helicoid: Helicoid) -> float:
+    """Return the transverse length of roll of an involute at its pitch radius.
+
+    Parameters
+    ----------
+    helicoid : Helicoid
+        Flank of a pinion.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    return helicoid.pitch_radius * sin(helicoid.pressure_angle)
+
+
 def _contact_of(line: ContactLine) -> ConjugateContact:
     """Return the numbers of a contact line in the signs of `ConjugateContact` (its turn is the line's
     reversed).
     """
     helicoid, y = line.helicoid, line.pinion_place
-    path = y + helicoid.lead * helicoid.pitch_roll
+    path = y + helicoid.lead * pitch_roll(helicoid)
     roll = line.pinion_slope + helicoid.phase
     return ConjugateContact(line.psi, -line.turn, line.transmission_error, y, roll, path)
 

@@ -170,11 +170,6 @@ class Helicoid:
         """Tangent of the base helix: transverse length of roll per length of face."""
         return self.sine / self.cosine
 
-    @cached_property
-    def pitch_roll(self) -> float:
-        """Transverse length of roll at the pitch radius, m."""
-        return self.pitch_radius * sin(self.pressure_angle)
-
 
 @dataclass(frozen=True)
 class ToothFamily:

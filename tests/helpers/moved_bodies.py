@@ -74,7 +74,7 @@ class MovedBodies:
             return np.array([*(first / self.design.module), *apart[np.argsort(np.abs(normal))[:2]]])
 
         scale = np.array([1.0, 0.01, 0.01, 0.1, 0.1])
-        pitch_roll = helicoid.pitch_roll
+        pitch_roll = helicoid.pitch_radius * np.sin(helicoid.pressure_angle)
         start = [
             helicoid.pressure_angle,
             (pitch_roll + self.design.shaper_lift * np.sin(helicoid.pressure_angle)) / helicoid.cosine,

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame
-from facegear.teeth.conjugate import PairNumbers, exact_contact
+from facegear.teeth.conjugate import PairNumbers, exact_contact, pitch_roll
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.placement import FLANKS, RigidMotion, mirror_design, pair_at, pinion_angle, rotation
@@ -75,7 +75,7 @@ def pose_of(
     """
     back, (across, along, up) = gear.inverse(), axes.basis
     turn = back.matrix @ pinion.matrix
-    place = back.points(pinion.points(middle_place(middle, axes)[None]))[0]
+    middle_point = back.points(pinion.points(middle_place(middle, axes)[None]))[0]
     axis = turn @ along
     around = float(np.arctan2(-axis[0], axis[1]))
     # Turned back into the plane of y and z, the pinion's axis is (level, axis[2]) = (sine, -cosine).
@@ -84,12 +84,12 @@ def pose_of(
         np.arctan2(level * axes.cosine + axis[2] * axes.sine, level * axes.sine - axis[2] * axes.cosine)
     )
     unturned = _about_z(-around)
-    place, turn = unturned @ place, unturned @ turn
-    outward = float((place[1] - middle * axes.sine) / level)
+    middle_point, turn = unturned @ middle_point, unturned @ turn
+    outward = float((middle_point[1] - middle * axes.sine) / level)
     errors = AssemblyErrors(
-        offset=float(place[0] - axes.offset),
+        offset=float(middle_point[0] - axes.offset),
         shaft_angle_error=tilt,
-        gear_axial=float(place[2] + middle * axes.cosine - outward * axis[2]),
+        gear_axial=float(middle_point[2] + middle * axes.cosine - outward * axis[2]),
     )
     # What is left of the turn is about the pinion's own axis, before the tilt about x.
     ahead = float(np.arctan2(-turn[0] @ up, turn[0] @ across))
@@ -201,7 +201,8 @@ class DisplacedFlank:
     outward
         Shift of the pinion along its axis, away from the gears' axis.
     path
-        Place of the contact along the pinion's axis, as `ConjugateContact.path`.
+        Place of the contact along the pinion's axis, as `ConjugateContact.path`, counted where the pinion
+        was assembled.
     slope
         Slope of the common normal (the pressure angle there); NaN where the contact was searched.
     approach
@@ -272,21 +273,24 @@ def displaced_flanks(
     # The face of a spur pinion keeps its ends when it moves along its axis, which nothing else would feel.
     outward = nominal.pinion_axial if design.is_spur else pose.outward
     errors = replace(pose.errors, pinion_axial=outward)
-    posed = [_pair_of_flank(assembled_design, errors, flank) for flank in FLANKS]
-    contacts = [_contact(pair, pose, flank, position) for pair, flank in zip(posed, FLANKS, strict=True)]
+    posed_pairs = [_pair_of_flank(assembled_design, errors, flank) for flank in FLANKS]
+    contacts = [
+        _contact(pair, pose, flank, position) for pair, flank in zip(posed_pairs, FLANKS, strict=True)
+    ]
     still = Pose(nominal, nominal.pinion_axial, 0.0, 0.0)
     rest = [
         _contact(_pair_of_flank(assembled_design, nominal, flank), still, flank, position)[0]
         for flank in FLANKS
     ]
-    arms = [pair.gear_normal_arm for pair in posed]
-    found = {}
-    for number, (flank, pair) in enumerate(zip(FLANKS, posed, strict=True)):
+    arms = [pair.gear_normal_arm for pair in posed_pairs]
+    flanks = {}
+    for number, (flank, pair) in enumerate(zip(FLANKS, posed_pairs, strict=True)):
         (error, path, slope), ends = contacts[number], PairNumbers.of_design(pair)
-        found[flank] = DisplacedFlank(
+        along = pair.assembly.pinion_axial - nominal.pinion_axial
+        flanks[flank] = DisplacedFlank(
             design=pair,
             outward=pose.outward,
-            path=path,
+            path=path + along,
             slope=slope,
             approach=error - rest[number],
             deflection=_first_order(assembled_design, turns, SIDES[number]),
@@ -294,7 +298,7 @@ def displaced_flanks(
             to_inner_end=path - ends.first_end,
             to_outer_end=ends.last_end - path,
         )
-    return found
+    return flanks
 
 
 def _pair_of_flank(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
@@ -321,7 +325,7 @@ def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tup
     phi1 = sign * (float(pinion_angle(design, position)) + pose.ahead)
     contact = unloaded_contact(design, phi1)
     helicoid, (roll, y) = design.family.pinion_flanks[0], (float(part[0]) for part in contact.path)
-    path = y + helicoid.lead * (helicoid.pitch_roll - helicoid.base_radius * roll)
+    path = y + helicoid.lead * (pitch_roll(helicoid) - helicoid.base_radius * roll)
     return float(contact.transmission_error[0]) + rotation_error, path, float("nan")
 
 
@@ -341,11 +345,12 @@ def _turns(
     cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
     of_pinion = axes.basis.T @ to_mesh
     of_gear = to_mesh @ np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
-    driving, driven = np.array(pinion.turn) * [1.0, 1.0, -1.0], np.array(gear.turn) * [1.0, 1.0, mesh.sign]
+    pinion_turn = np.array(pinion.turn) * [1.0, 1.0, -1.0]
+    gear_turn = np.array(gear.turn) * [1.0, 1.0, mesh.sign]
     middle, centre = middle_place(design.middle, axes), np.array([0.0, 0.0, -mesh.tilt_height])
     return (
-        (of_pinion @ np.array(pinion.shift), of_pinion @ driving, middle),
-        (of_gear @ np.array(gear.shift), of_gear @ driven, centre),
+        (of_pinion @ np.array(pinion.shift), of_pinion @ pinion_turn, middle),
+        (of_gear @ np.array(gear.shift), of_gear @ gear_turn, centre),
     )
 
 

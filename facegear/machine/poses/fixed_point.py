@@ -236,11 +236,13 @@ def pose_at(
     factor, energies = np.ones(meshes), []
     for mesh, name in enumerate(names):
         at = float(torque[mesh]), float(path[mesh]), float(angle[mesh])
-        own = surfaces[loaded_flanks[mesh]]
-        own.require(name, *at)
+        loaded_surface = surfaces[loaded_flanks[mesh]]
+        loaded_surface.require(name, *at)
         if forces[mesh] != 0.0:
             factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
-        energy_of_pair = mesh_energy(own, *at) if load is None else linear_energy(own, load, *at)
+        energy_of_pair = (
+            mesh_energy(loaded_surface, *at) if load is None else linear_energy(loaded_surface, load, *at)
+        )
         energies.append(energy_of_pair.with_stiffness_factor(_scale(machine, surface, mesh)))
     reactions = flank_reactions(surfaces, poses, contacts, energies, loaded_flanks)
     closure = closing_beyond(machine, surface, poses, contacts)
@@ -288,12 +290,12 @@ def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displace
         displacements_from_assembly[4 * pinion : 4 * pinion + 2] += position
     motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, displacements_from_assembly)
     side = np.array([machine.layout.gears[g].sign for _, g in machine.layout.meshes])
-    places = machine.imperfections.outwards[[pinion for pinion, _ in machine.layout.meshes]]
+    axial_places = machine.imperfections.outwards[[pinion for pinion, _ in machine.layout.meshes]]
     return MeshPoses(
         offset=motion.offset + side * nominal.offset,
         gear_axial=motion.gear_axial + nominal.gear_axial,
         shaft_angle_error=motion.shaft_angle_error + side * nominal.shaft_angle_error,
-        outward=motion.outward + places + nominal.pinion_axial,
+        outward=motion.outward + axial_places + nominal.pinion_axial,
         pinion_axial=nominal.pinion_axial,
     )
 

@@ -187,7 +187,7 @@ def _rim_parts(layout: Layout, kind: ToothKind, gear: int, middle: float) -> Arr
     The rim moves the teeth as a rigid whole about the point of the pitch plane below the middle of the
     pinion's face.
     """
-    axes, sign = layout.axes(gear), layout.gears[gear].sign
+    axes, sign = _axes(layout, gear), layout.gears[gear].sign
     middle_point = middle_place(middle, axes)
     radius, up = np.hypot(*middle_point[:2]), np.array([0.0, 0.0, 1.0])
     outwards = np.append(middle_point[:2] / radius, 0.0)
@@ -209,6 +209,13 @@ def _bend_spur_rims(linear: LinearModel, layout: Layout, middle: float, rows: Ar
     offset += sides * pitch_radius / middle * linear.slopes[1]
 
 
+def _axes(layout: Layout, gear: int) -> RelativeMotion:
+    """Return the motion of the pinions against a gear, in the mesh frame of that gear."""
+    if layout.kind is not None:
+        return layout.kind.motion(layout.gears[gear].sign)
+    return RelativeMotion(layout.pinion_teeth / layout.gear_teeth)
+
+
 def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
     """Return the derivatives (4, 3) of PARTS by motions of the middle of a pinion's face and by its turns, in
     the mesh frame, m/m and m/rad.
@@ -226,7 +233,7 @@ def _pinion_parts(layout: Layout, gear: int, middle: float) -> tuple[Array, Arra
     """Return the derivatives of PARTS at a gear by motions (4, 3) along x, y, z of a pinion and by its tilts
     (4, 2) about x and y.
     """
-    axes = layout.axes(gear)
+    axes = _axes(layout, gear)
     to_mesh = axes.basis.T @ to_mesh_frame(layout.gears[gear].sign)
     by_shift, by_turn = _parts(axes, middle)
     return by_shift @ to_mesh, by_turn @ to_mesh[:, :2]
@@ -236,7 +243,7 @@ def _gear_parts(layout: Layout, pinion: int, gear: int, middle: float) -> tuple[
     """Return the derivatives of PARTS of a mesh by motions (4, 3) along x, y, z of its gear and by tilts
     (4, 2) of the gear about x and y.
     """
-    axes, at = layout.axes(gear), layout.angles[pinion]
+    axes, at = _axes(layout, gear), layout.angles[pinion]
     cosine, sine = np.cos(at), np.sin(at)
     to_mesh = to_mesh_frame(layout.gears[gear].sign) @ np.array(
         [[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]]
@@ -278,7 +285,7 @@ def rim_levers(layout: Layout, middle: float) -> Array:
     levers = np.zeros((2, len(layout.meshes)))
     for mesh, (_, gear) in enumerate(layout.meshes):
         forces = gear_forces(layout, gear)
-        radius = np.hypot(*middle_place(middle, layout.axes(gear))[:2])
+        radius = np.hypot(*middle_place(middle, _axes(layout, gear))[:2])
         levers[:, mesh] = forces.directions[:, 0] * (forces.radii - radius)
     return levers.ravel()
 

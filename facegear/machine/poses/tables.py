@@ -94,12 +94,12 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
     layout, rows = machine.layout, []
     drive, back = np.split(result.flank_closure, 2)
     surfaces = loaded_surfaces(result, surface)
-    for mesh, (name, own) in enumerate(zip(layout.mesh_names, surfaces, strict=True)):
+    for mesh, (name, loaded_surface) in enumerate(zip(layout.mesh_names, surfaces, strict=True)):
         on_back, angle = result.forces[mesh] < 0.0, float(result.angle[mesh])
         at = float(result.torque[mesh]), float(result.path[mesh]), angle
         rest = nominal_contact(machine, surface, mesh, on_back)
-        values = {quantity: own.at(quantity, *at) for quantity in own.values}
-        nominal = {quantity: own.at(quantity, at[0], *rest) for quantity in own.values}
+        values = {quantity: loaded_surface.at(quantity, *at) for quantity in loaded_surface.values}
+        nominal = {quantity: loaded_surface.at(quantity, at[0], *rest) for quantity in loaded_surface.values}
         has_load = result.forces[mesh] != 0.0
         rows.append(
             {
@@ -117,8 +117,8 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
                 "unloaded_path_mm": 1e3 * at[1],
                 "path_mm": 1e3 * values[RADIUS] if has_load else np.nan,
                 "path_as_assembled_mm": 1e3 * nominal[RADIUS] if has_load else np.nan,
-                "to_inner_end_mm": 1e3 * (at[1] - own.pair.first_end),
-                "to_outer_end_mm": 1e3 * (own.pair.last_end - at[1]),
+                "to_inner_end_mm": 1e3 * (at[1] - loaded_surface.pair.first_end),
+                "to_outer_end_mm": 1e3 * (loaded_surface.pair.last_end - at[1]),
                 "stiffness_factor": result.factor[mesh],
                 **{
                     column: 100.0 * (values[quantity] / nominal[quantity] - 1.0) if has_load else np.nan
@@ -169,10 +169,10 @@ def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
         N, N and N m.
     """
     rows = []
-    for own, force, reactions in zip(
+    for loaded_surface, force, reactions in zip(
         loaded_surfaces(result, surface), np.abs(result.forces), result.reactions, strict=True
     ):
-        pair, (tangential, shifting, turning) = own.pair, reactions.tolist()
+        pair, (tangential, shifting, turning) = loaded_surface.pair, reactions.tolist()
         sine, cosine = pair.axes.sine, pair.axes.cosine
         outwards = (force * pair.base_helix_sine + shifting * cosine) / sine
         overturning = turning + pair.mean_radius * (sine * shifting + cosine * outwards)
@@ -288,7 +288,7 @@ def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, p
             }
             for mesh, name in enumerate(names)
         ]
-        pairs = [own.pair for own in loaded_surfaces(result, surface)]
+        pairs = [flank_surface.pair for flank_surface in loaded_surfaces(result, surface)]
         for end, sign in (("inner", -1.0), ("outer", 1.0)):
             radii = np.array([pair.first_end if end == "inner" else pair.last_end for pair in pairs])
             now = sign * (result.path - radii) > 0.0

@@ -133,8 +133,8 @@ def duty_poses(
         surfaces = flank_surfaces(machine, pose_surface)
         for mesh, name in enumerate(names):
             for back, flank in enumerate(FLANKS):
-                own = surfaces[mesh + len(names) * back]
-                contact = contact_at(own.pair, result.poses.errors(mesh, bool(back)))
+                flank_surface = surfaces[mesh + len(names) * back]
+                contact = contact_at(flank_surface.pair, result.poses.errors(mesh, bool(back)))
                 carries = bool(back) == (result.forces[mesh] < 0.0)
                 rows.append(
                     (

@@ -98,9 +98,9 @@ def posed_stress(
     ):
         mesh = int(np.argmax(numbers == number))
         loaded_flank = FLANKS[int(result.forces[mesh] < 0.0)]
-        assembled = contacts_of(names[mesh], assembled_contacts, gears)[loaded_flank].roots
+        assembled_roots = contacts_of(names[mesh], assembled_contacts, gears)[loaded_flank].roots
         roots: dict[str, RootStress] = {
-            body: replace(passing(body, flank, posed_contact.loads), error=assembled[body].error)
+            body: replace(passing(body, flank, posed_contact.loads), error=assembled_roots[body].error)
             for body, flank in zip(BODIES, flanks_of(pairs.designs[number], design, flanks), strict=True)
         }
         arrays |= root_arrays_of(number, roots)

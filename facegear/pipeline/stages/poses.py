@@ -100,16 +100,16 @@ def pose_surface(
     pairs, numbers = surface_pairs(teeth.design, gears_of(teeth.design, flanks))
     surfaces, nodes, errors = [], [], []
     for design in pairs.values():
-        solved, offsets = _solve_surface(teeth, design, flanks, plan, torque_n_m, tilting)
-        surfaces.append(solved)
-        nodes.append(node_table(solved.nodes, solved.values, offsets))
-        errors.append(error_table(solved))
+        flank_surface, offsets = _solve_surface(teeth, design, flanks, plan, torque_n_m, tilting)
+        surfaces.append(flank_surface)
+        nodes.append(node_table(flank_surface.nodes, flank_surface.values, offsets))
+        errors.append(error_table(flank_surface))
     first, *further = surfaces
     surface = replace(first, further=tuple(further), flank_numbers=numbers)
     worst = max(table[table["quantity"] == STIFFNESS]["largest"].max() for table in errors)
-    poses = sum(solved.nodes.angles.size * solved.nodes.paths.size for solved in surfaces)
-    lowest = min(solved.nodes.paths[0] for solved in surfaces)
-    highest = max(solved.nodes.paths[-1] for solved in surfaces)
+    poses = sum(one_surface.nodes.angles.size * one_surface.nodes.paths.size for one_surface in surfaces)
+    lowest = min(one_surface.nodes.paths[0] for one_surface in surfaces)
+    highest = max(one_surface.nodes.paths[-1] for one_surface in surfaces)
     summary = (
         f"{count_noun(poses, 'pose')}, paths {1e3 * lowest:.1f} to {1e3 * highest:.1f} mm, up to "
         f"{first.nodes.torques[-1]:g} N m; stiffness misses a node that is left out by at most "
@@ -169,13 +169,13 @@ def _solve_surface(
     flanks: of `placement.nominal_pairs` of `teeth.design`; torque: reference torque, N m; tilting: whether
     bodies may tilt.
     """
-    own, numbers = flanks_of(design, teeth.design, flanks), PairNumbers.of_design(design)
+    pair_flanks, numbers = flanks_of(design, teeth.design, flanks), PairNumbers.of_design(design)
     nodes = surface_nodes(numbers, design.assembly, plan.torques[-1], tilting)
     plan = replace(plan, torques=tuple(nodes.torques.tolist()))
     assemblies = nodes.assemblies(numbers, design.assembly.pinion_axial)
     rows = [
-        quantities(design, own, posed_contact)
-        for posed_contact in posed_contacts(design, teeth.materials, own, plan, assemblies)
+        quantities(design, pair_flanks, posed_contact)
+        for posed_contact in posed_contacts(design, teeth.materials, pair_flanks, plan, assemblies)
     ]
     shape = len(nodes.angles), len(nodes.paths), len(nodes.torques)
     values = {name: np.array([row[name] for row in rows]).reshape(shape) for name in rows[0]}
@@ -420,8 +420,8 @@ def _check(
     sums of the touching loads.
     """
     at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
-    own = loaded_surfaces(result, surface)[mesh]
-    at_pose = {name: own.at(name, *at) for name in own.values if name in direct[1]}
+    loaded_surface = loaded_surfaces(result, surface)[mesh]
+    at_pose = {name: loaded_surface.at(name, *at) for name in loaded_surface.values if name in direct[1]}
     at_pose |= dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True))
     rows = [
         (name, value, float(direct[1][name][0]), float(direct[0][name][0])) for name, value in at_pose.items()

@@ -8,7 +8,7 @@ import pytest
 from contact_bodies import STEEL
 from family_pairs import public_pair
 from lattice_bodies import FLANKS_ALONE, foundation, half_spaces, model_of, patch, whole_flank
-from public_teeth import MM, NAMES, public_numbers
+from public_teeth import ERRORS, MM, NAMES, public_numbers
 from references import against, agrees
 
 from facegear.contact.hertz import contact_modulus
@@ -124,18 +124,22 @@ def test_force_of_a_light_contact_is_along_the_public_normal_and_turns_both_gear
     capability="contact",
     module="facegear.contact.nodal_loads",
 )
+@pytest.mark.parametrize("errors", [AssemblyErrors(), ERRORS], ids=["as designed", "displaced"])
 @pytest.mark.parametrize("name", NAMES)
-def test_wrench_is_the_derivative_of_the_transmission_error_by_the_pose(name):
+def test_wrench_is_the_derivative_of_the_transmission_error_by_the_pose(name, errors):
     """dTE/d(pose) of the loaded solution against its own wrench, with a rigid gear on a foundation."""
-    design, torque, step = public_pair(name), 5.0, 0.2e-6
-    line = contact_line(design.family, 1)
+    design, torque, step = replace(public_pair(name), assembly=errors), 5.0, 0.2e-6
+    line = contact_line(design.family, 1, errors)
     centre, position = place_of(design, contact_path(design.family, line).middle, line)
-    axis = design.family.motion.basis[1]
+    axis = line.posed_frame[0].basis[1]
     model = model_of(design, patch(design, centre, (0.06 * MM, 1.2 * MM), (41, 25)), FOUNDATION)
-    middle, force = np.array([design.offset, 0.0, 0.0]) + design.middle * axis, torque / design.normal_arm
+    middle, force = np.array([design.offset, 0.0, 0.0]), torque / design.normal_arm
+    # the error of the shaft angle tilts about the place that offset and shift of the gear put the middle to
+    middle += design.middle * design.family.motion.basis[1] + [errors.offset, 0.0, errors.gear_axial]
 
     def error(**pose):
-        posed = model.with_assembly(AssemblyErrors(**pose))
+        moved = {way: getattr(errors, way) + size for way, size in pose.items()}
+        posed = model.with_assembly(replace(errors, **moved))
         return loaded_contact(posed, [position], [torque], FLANKS_ALONE)[0].ste
 
     found = loaded_contact(model, [position], [torque], FLANKS_ALONE)[0]

@@ -20,6 +20,7 @@ from facegear.machine.static_gears import at_rest as static
 from facegear.machine.statics import mean_equilibrium
 from facegear.machine.torques import balanced_torques
 from facegear.pipeline.stages.poses import surface_pairs
+from facegear.sharing import sensitivity
 from facegear.teeth.conjugate import PairNumbers
 
 KINDS = ["P1", "P2", "P3 at 92 deg", "P4 at 5 mm"]
@@ -119,3 +120,12 @@ def test_a_converged_pose_of_every_kind_has_its_own_forces_and_compression(name)
         scale = machine.stiffness.mean / surface.reference_stiffness
         known = mesh_energy(surfaces[flank], *at).approach / scale
         assert over[flank] == pytest.approx(known, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["spur", "P1"])
+def test_bearings_are_scanned_for_a_machine_at_its_pose_whose_gears_tilt(name, monkeypatch):
+    """Gears of the scan do not tilt: directions of the pose failed on the coordinates that are gone."""
+    monkeypatch.setattr(sensitivity, "BEARINGS", (1e8,))
+    pair = replace(pair_of("P2"), taper_angle=0.0) if name == "spur" else pair_of(name)
+    posed = operating_pose(machine_of(pair), surface_of(pair)).machine
+    assert np.isfinite(sensitivity.bearing_scan(posed)["k_gamma"]).all()
