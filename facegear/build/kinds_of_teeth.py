@@ -26,9 +26,7 @@ FLANKS, MIDDLE = "pressure_angle_deg", "pinion.middle_mm"
 ALL_KINDS = (*SPUR_VALUES, FLANKS, MIDDLE)
 """Keys of section `tooth_pair` that make teeth other than spur ones, or stand the pinion elsewhere."""
 
-SPUR_ONLY: Mapping[str, tuple[str, ...]] = {
-    "sharing_map": ALL_KINDS,
-}
+SPUR_ONLY: Mapping[str, tuple[str, ...]] = {}
 """Keys of section `tooth_pair` that a stage cannot take yet, by its name."""
 
 

@@ -107,8 +107,10 @@ def _inclined(design: PairDesign) -> TeethOnBody:
     tips = face_gear.tip_height(design, ends) - back
     angle = design.shaft_angle
     pitch = -(design.gear_pitch_radius * cos(angle) + design.pinion_pitch_radius) / sin(angle)
-    first, last = (tuple(heights.tolist()) for heights in (roots, tips))
-    return TeethOnBody(gear.inner_radius, gear.outer_radius, first, last, pitch - back)
+    (root, outer_root), (tip, outer_tip) = roots.tolist(), tips.tolist()
+    return TeethOnBody(
+        gear.inner_radius, gear.outer_radius, (root, outer_root), (tip, outer_tip), pitch - back
+    )
 
 
 def require_teeth_on_rim(shape: shapes.Section, on_body: TeethOnBody) -> None:

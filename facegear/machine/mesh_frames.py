@@ -102,14 +102,14 @@ def rim_forces(frames: tuple[FlankFrame, FlankFrame], sign: float, middle: float
     for flank, frame in enumerate(frames):
         (n_across, n_height, n_outwards), (across, height, outwards) = frame.gear_normal, frame.gear_point
         way = -height / n_height
-        place = across + way * n_across, outwards + way * n_outwards
-        turn = atan2(*place)
+        crossing = across + way * n_across, outwards + way * n_outwards
+        turn = atan2(*crossing)
         directions[flank] = (
             -sign * n_height,
             cos(turn) * n_across - sin(turn) * n_outwards,
             sin(turn) * n_across + cos(turn) * n_outwards,
         )
-        turns[flank], radii[flank] = turn, hypot(*place)
+        turns[flank], radii[flank] = turn, hypot(*crossing)
     return RimForces(directions, turns, radii, middle)
 
 

@@ -146,8 +146,8 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
     shapes = _shapes(body.compliance_with_slope(layout.gear_radius))
     flanks, slopes = _waves(shapes, layout, gear)
     columns = _condense_columns(np.concatenate([flanks, *slopes]))
-    radial, *remaining = np.split(columns[len(flanks) :], len(slopes))
-    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, *remaining])
+    radial, *slopes_and_motions = np.split(columns[len(flanks) :], len(slopes))
+    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, *slopes_and_motions])
 
 
 ROUND = 1

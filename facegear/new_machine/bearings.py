@@ -214,7 +214,7 @@ def smallest_torque(closed_form: SplitMachine, bearings: Bearings, torque: float
             closed_form.input_force * float(factor),
             closed_form.mesh_stiffness,
             closed_form.backlash,
-            closed_form.pressure_angle,
+            closed_form.idler_push,
         )
         if heavier.input_k_gamma(SOFTEST * closed_form.mesh_stiffness, bearings.idlers) <= LARGEST_K_GAMMA:
             return torque * float(factor)

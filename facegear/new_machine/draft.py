@@ -119,7 +119,7 @@ class Draft:
             input_force=self.wishes.torque_n_m / design.pinion_base_radius,
             mesh_stiffness=self.stiffness,
             backlash=design.pinion.thinning,
-            pressure_angle=design.pressure_angle,
+            idler_push=2.0 * cos(design.pressure_angle),
         )
 
     def stiff_bearings(self) -> Bearings:

@@ -146,9 +146,10 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
         limit = f"below `outer radius of the hub`, {1e3 * hub.outer_radius:g} mm"
         raise InvalidInput("bore radius of the hub", 1e3 * hub.bore_radius, limit)
     at_hub, at_rim = web_ends(hub, web, rim)
-    lowest_fronts = hub.front, min(rim.front, rim.outer_front)
-    for part, body, front, (low, high) in zip(
-        ("hub", "rim"), (hub, rim), lowest_fronts, (at_hub, at_rim), strict=True
+    rim_front = min(rim.front, rim.outer_front)
+    for part, body, front, (low, high) in (
+        ("hub", hub, hub.front, at_hub),
+        ("rim", rim, rim_front, at_rim),
     ):
         if body.back >= front:
             raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * front:g} mm")

@@ -29,8 +29,14 @@ class SplitMachine:
         Stiffness of every mesh, N/m.
     backlash : float
         Normal backlash of every mesh from flank to flank, m.
-    pressure_angle : float
-        Pressure angle, rad.
+    idler_push : float
+        Force that both meshes of an idler put on its bearing over the force of one, dimensionless: twice the
+        cosine of the pressure angle of spur teeth.
+    input_push : float
+        Half the force on the bearing of an input by the difference of its two mesh forces, over that
+        difference, dimensionless.
+    idler_meshes : float
+        Compliance of both meshes of an idler over that of two meshes with its force, dimensionless.
     """
 
     inputs: int
@@ -38,7 +44,9 @@ class SplitMachine:
     input_force: float
     mesh_stiffness: float
     backlash: float
-    pressure_angle: float
+    idler_push: float
+    input_push: float = 1.0
+    idler_meshes: float = 1.0
 
     def input_k_gamma(self, input_bearing: float, idler_bearing: float) -> float:
         """Compute the mesh load factor of the harder loaded mesh (upper gear) of an input, without errors.
@@ -81,7 +89,7 @@ class SplitMachine:
         softness = (loop + gap) / (k_gamma - 1.0) - loop
         if softness <= 1.0:
             return float("inf")
-        return 2.0 * self.mesh_stiffness / (softness - 1.0)
+        return 2.0 * self.mesh_stiffness * self.input_push**2 / (softness - 1.0)
 
     def idler_force(self, input_bearing: float, idler_bearing: float) -> float:
         """Return the force of each of the two meshes of an idler, without errors.
@@ -106,7 +114,7 @@ class SplitMachine:
     def path_stiffness(self, idler_bearing: float) -> float:
         """Return the stiffness k_e of the path through an idler: two meshes and the bearing in series.
 
-        1 / (2 / mesh stiffness + 4 cos^2(pressure angle) / bearing stiffness).
+        1 / (2 / mesh stiffness + push^2 / bearing stiffness), push that of an idler.
 
         Parameters
         ----------
@@ -118,26 +126,26 @@ class SplitMachine:
         float
             Force between the gears over their approach along the line of action, N/m.
         """
-        cosine = np.cos(self.pressure_angle)
-        return float(1.0 / (2.0 / self.mesh_stiffness + 4.0 * cosine**2 / idler_bearing))
+        meshes = 2.0 * self.idler_meshes / self.mesh_stiffness
+        return float(1.0 / (meshes + self.idler_push**2 / idler_bearing))
 
     def _loop(self, idler_bearing: float) -> float:
         """Return the compliance that the idlers add to the loop of an input's two meshes, times the mesh
         stiffness.
 
-        It is inputs/idlers (1 + 2 k cos^2(alpha) / bearing): misfit over the force of the input's lower
-        mesh, dimensionless. `idler_bearing` is the radial stiffness of an idler's bearing, N/m.
+        It is inputs/idlers (1 + push^2 k / 2 bearing): misfit over the force of the input's lower mesh,
+        dimensionless. `idler_bearing` is the radial stiffness of an idler's bearing, N/m.
         """
-        bending = 2.0 * self.mesh_stiffness * np.cos(self.pressure_angle) ** 2 / idler_bearing
-        return float(self.inputs / self.idlers * (1.0 + bending))
+        bending = 0.5 * self.mesh_stiffness * self.idler_push**2 / idler_bearing
+        return float(self.inputs / self.idlers * (self.idler_meshes + bending))
 
     def _softness(self, input_bearing: float) -> float:
-        """Return 1 + 2 k / bearing: compliance of an input's mesh with its bearing, over that of the mesh
-        alone.
+        """Return 1 + 2 k push^2 / bearing: compliance of an input's mesh with its bearing, over that of the
+        mesh alone.
 
         `input_bearing` is the radial stiffness of an input's bearing, N/m; k is the mesh stiffness.
         """
-        return 1.0 + 2.0 * self.mesh_stiffness / input_bearing
+        return 1.0 + 2.0 * self.mesh_stiffness * self.input_push**2 / input_bearing
 
 
 def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -> Array:
@@ -174,7 +182,7 @@ def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -
 
 
 def plane_freedom(
-    paths: int, stiffness: float, bearings: tuple[float, float], pressure_angle: float
+    paths: int, stiffness: float, bearings: tuple[float, float], pushes: tuple[float, float]
 ) -> float:
     """Compute which part of a one-sided lateness of the paths the central members' motion in their planes
     takes up.
@@ -190,16 +198,20 @@ def plane_freedom(
         Stiffness k_e of each path, N/m.
     bearings : (2,) tuple of float
         Radial stiffness of the bearing of each central member, N/m; 0: it floats.
-    pressure_angle : float
-        Pressure angle, rad.
+    pushes : (2,) tuple of float
+        Force of a path on each central member square to its axis, over the force of the path, dimensionless:
+        the cosine of the pressure angle of spur teeth.
 
     Returns
     -------
     float
         Dimensionless: 1 where one member floats freely, 0 where both are fixed.
     """
-    sideways = paths / _sideways(paths) * stiffness * np.cos(pressure_angle) ** 2
-    compliance = sum(sideways / bearing if bearing > 0.0 else np.inf for bearing in bearings)
+    sideways = paths / _sideways(paths) * stiffness
+    compliance = sum(
+        sideways * push**2 / bearing if bearing > 0.0 else np.inf
+        for bearing, push in zip(bearings, pushes, strict=True)
+    )
     return float(1.0 if np.isinf(compliance) else compliance / (1.0 + compliance))
 
 

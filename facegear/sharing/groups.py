@@ -218,21 +218,25 @@ class MapOptions:
     seed: int
     bearing_factors: tuple[float, ...]
 
-    def deviation(self, pressure_angle: float) -> float:
-        """Compute the standard deviation of the lateness of an idler path: sqrt(2 mesh_error^2 + (2 cos a
+    def deviation(self, push: float, arm: float = 1.0) -> float:
+        """Compute the standard deviation of the lateness of an idler path: sqrt(2 (arm mesh_error)^2 + (push
         position)^2).
 
-        Both meshes err independently; a pinion out of place by x makes its path late by 2 x cos a.
+        Both meshes err independently; a pinion out of place along its tangent makes its path late by as much
+        as its bearing feels of the path's force there.
 
         Parameters
         ----------
-        pressure_angle : float
-            Pressure angle a, rad.
+        push : float
+            Tangential force of both meshes on the pinion over the force of the group's one, dimensionless:
+            twice the cosine of the pressure angle of spur teeth.
+        arm : float
+            Torque on the pinion over the force of the group's mesh, over that of a drive flank, along which
+            errors count; dimensionless.
 
         Returns
         -------
         float
             Standard deviation along the line of action, m.
         """
-        aside = 2.0 * np.cos(pressure_angle) * self.position
-        return float(np.sqrt(2.0 * self.mesh_error**2 + aside**2))
+        return float(np.sqrt(2.0 * (arm * self.mesh_error) ** 2 + (push * self.position) ** 2))

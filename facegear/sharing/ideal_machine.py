@@ -66,13 +66,16 @@ def split_machine(mapped: MappedMachine, group: LoadGroup) -> SplitMachine | Non
     spring = mapped.group_spring(group)
     if not idlers or not inputs or not np.isfinite(spring):
         return None
+    path = mapped.path_wrenches(idlers[0])
     return SplitMachine(
         inputs,
         len(idlers[0].meshes),
         mapped.load(group),
         spring,
         mapped.backlash(group),
-        layout.pressure_angle,
+        mapped.idler_push(idlers[0]) / path.arm,
+        mapped.input_push(group),
+        path.meshes / path.arm**2,
     )
 
 
@@ -105,8 +108,8 @@ def predicted_factor(
         return loop_factor(mapped, group)
     even = float(mapped.even(group).sum())
     load = _closed_load(mapped, group, even)
-    angle = mapped.machine.layout.pressure_angle
-    number = mapped.path_stiffness(group) * options.deviation(angle) / load if load > 0.0 else np.nan
+    deviation = mapped.deviation(group, options)
+    number = mapped.path_stiffness(group) * deviation / load if load > 0.0 else np.nan
     free = mapped.freedom(group) if freedom is None else freedom
     samples = k_gamma_samples(number, draws(group, options), free)
     return load / even * float(np.percentile(samples, JUDGED_LEVEL))
@@ -121,7 +124,7 @@ def _closed_load(mapped: MappedMachine, group: LoadGroup, even: float) -> float:
     if form is None:
         return even
     alone = form.idler_force(mapped.bearing(inputs[0]), mapped.bearing(group))
-    return len(group.meshes) * alone
+    return len(group.meshes) * alone / mapped.path_wrenches(group).arm
 
 
 def departures(machine: Machine) -> list[str]:

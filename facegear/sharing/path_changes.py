@@ -100,8 +100,7 @@ def judged_factor(mapped: MappedMachine, group: LoadGroup, options: MapOptions) 
         For idlers the percentile JUDGED_LEVEL (95 %) over drawn errors, for an input its value without
         them; dimensionless. Raises NotConverged.
     """
-    deviation = options.deviation(mapped.machine.layout.pressure_angle)
-    return group_levels(mapped, group, deviation, options)[LEVELS.index(JUDGED_LEVEL)]
+    return group_levels(mapped, group, mapped.deviation(group, options), options)[LEVELS.index(JUDGED_LEVEL)]
 
 
 FREE = 0.1

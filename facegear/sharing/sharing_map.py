@@ -180,8 +180,9 @@ def map_points(machines: Sequence[tuple[float, Machine]], options: MapOptions) -
     """
     rows: list[tuple[object, ...]] = []
     for torque, machine in machines:
-        mapped, deviation = MappedMachine(machine), options.deviation(machine.layout.pressure_angle)
+        mapped = MappedMachine(machine)
         for group in split_groups(machine.layout):
+            deviation = mapped.deviation(group, options)
             number = mapped.number(group, deviation)
             if not np.isfinite(number) or not np.isfinite(mapped.even(group)).all():
                 continue

@@ -176,7 +176,7 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
         for mesh, (_, g) in enumerate(layout.meshes):
             rows[:, mesh] += _rim_parts(layout, layout.kind, g, middle) @ linear.slopes[:, mesh]
     elif linear.slopes is not None:
-        _bend_spur_rims(linear, layout, middle, rows)
+        _bend_spur_rims(linear, linear.slopes, layout, middle, rows)
     return rows
 
 
@@ -188,25 +188,28 @@ def _rim_parts(layout: Layout, kind: ToothKind, gear: int, middle: float) -> Arr
     pinion's face.
     """
     axes, sign = _axes(layout, gear), layout.gears[gear].sign
-    place = middle_place(middle, axes)
-    radius, up = np.hypot(*place[:2]), np.array([0.0, 0.0, 1.0])
-    outwards = np.append(place[:2] / radius, 0.0)
+    middle_point = middle_place(middle, axes)
+    radius, up = np.hypot(*middle_point[:2]), np.array([0.0, 0.0, 1.0])
+    outwards = np.append(middle_point[:2] / radius, 0.0)
     around = sign * np.cross(outwards, up)
     turns = np.cross(np.stack([outwards, around / radius, 0.0 * up, 0.0 * up]), up)
     motions = np.stack([0.0 * up, 0.0 * up, up, outwards])
-    motions += np.cross(turns, (place[2] + kind.pitch_height(sign)) * up)
+    motions += np.cross(turns, (middle_point[2] + kind.pitch_height(sign)) * up)
     by_shift, by_turn = _parts(axes, middle)
     return -by_shift @ motions.T - by_turn @ turns.T
 
 
-def _bend_spur_rims(linear: LinearModel, layout: Layout, middle: float, rows: Array) -> None:
-    """Add to `rows` (4, meshes, n) what rims that bend below spur teeth add, in place."""
+def _bend_spur_rims(linear: LinearModel, slopes: Array, layout: Layout, middle: float, rows: Array) -> None:
+    """Add to `rows` (4, meshes, n) what rims that bend below spur teeth add, in place.
+
+    slopes (2, meshes, n): of the rims, those of `linear`.
+    """
     offset, shift, angle, _ = rows
     _bending(linear, layout, shift)
-    angle -= linear.slopes[0]
+    angle -= slopes[0]
     sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
     pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
-    offset += sides * pitch_radius / middle * linear.slopes[1]
+    offset += sides * pitch_radius / middle * slopes[1]
 
 
 def _axes(layout: Layout, gear: int) -> RelativeMotion:

@@ -34,7 +34,7 @@ from facegear.machine.kinematics import GEOMETRIC
 from facegear.machine.layout import Body, FaceGear, Pinion, Role, Side, Tilt
 from facegear.machine.loaded_modes import loaded_modes
 from facegear.machine.machine import Damping, Machine, OpenFlanks
-from facegear.machine.poses.mesh_poses import pose_rows
+from facegear.machine.poses.mesh_poses import ForceDirections, pose_rows, rim_levers
 from facegear.machine.static_gears import at_rest, static_rows
 from facegear.machine.statics import mean_equilibrium
 from facegear.machine.torques import balanced_torques
@@ -403,3 +403,23 @@ def test_machines_whose_gears_bend_under_any_teeth_move_as_scipy_says(name):
     agrees("motion of the waves over the largest", apart / scale, np.zeros_like(apart), absolute=1e-6)
     expected = moved @ rows.T
     assert scale > 1e-7 and np.ptp(expected[:, :4], axis=0).min() > 1e-7
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_levers_of_posed_meshes_complete_the_wrench_on_a_rim_that_tilts(name):
+    """Teeth round the middle of the pinion's face; with an offset slopes are those below it, not those at the
+    flank.
+    """
+    teeth, height = KINDS[name], 0.018
+    layout = layout_of(teeth, tilt=Tilt(0.3, 1e7, height))
+    rigid, axes = balanced_machine(layout), place(teeth, 0.0, True)
+    body = carried(hypot(*(teeth.offset * axes.x + teeth.face * axes.a)[:2]), height)
+    directions = ForceDirections(layout, teeth.face, np.zeros((8, 4)), rim_levers(layout, teeth.face))
+    for gear in range(2):
+        linear = replace(rigid, bodies=ElasticGears(layout, {gear: body})).linear
+        rows = directions(linear).rows
+        for number, (column, factor) in enumerate(hub_columns(layout, gear)):
+            if number != 1:  # round the axis a force has its lever in the rigid rows alone
+                expected = np.where(np.arange(8) // 2 % 2 == gear, factor * rows[:, column], 0.0)
+                found = rows[:, layout.dof + number]
+                np.testing.assert_allclose(found, expected, rtol=0, atol=5e-5 if teeth.offset else 1e-12)

@@ -64,7 +64,7 @@ def test_k_gamma_of_inputs_and_force_of_idlers_are_those_of_the_statics(drawn):
     idlers, input_bearing, idler_bearing, backlash_um = drawn
     force = facegear.load(config_of(*drawn)).statics().table().set_index("mesh")["force_n"].abs()
     arm = 0.5 * 3.75e-3 * 23 * np.cos(ANGLE)
-    machine = SplitMachine(2, idlers, 1328 / arm, STIFFNESS, 1e-6 * backlash_um, ANGLE)
+    machine = SplitMachine(2, idlers, 1328 / arm, STIFFNESS, 1e-6 * backlash_um, 2.0 * np.cos(ANGLE))
     inputs = force[[name.startswith("input") and name.endswith("upper") for name in force.index]]
     led = force[[name.startswith("idler") for name in force.index]]
     k_gamma = machine.input_k_gamma(input_bearing, idler_bearing)
@@ -74,7 +74,7 @@ def test_k_gamma_of_inputs_and_force_of_idlers_are_those_of_the_statics(drawn):
 
 @given(st.floats(1.05, 1.6), st.floats(8.5, 9.5), st.floats(0.0, 200e-6))
 def test_the_bearing_chosen_for_a_k_gamma_gives_it(k_gamma, decade, backlash):
-    machine = SplitMachine(2, 3, 33e3, STIFFNESS, backlash, ANGLE)
+    machine = SplitMachine(2, 3, 33e3, STIFFNESS, backlash, 2.0 * np.cos(ANGLE))
     bearing = machine.input_bearing_for(k_gamma, 10**decade)
     if np.isfinite(bearing):
         assert machine.input_k_gamma(bearing, 10**decade) == pytest.approx(min(k_gamma, 2.0), rel=1e-9)

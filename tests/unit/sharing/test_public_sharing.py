@@ -44,7 +44,7 @@ SAMPLES = 200_000
 
 
 def path_stiffness():
-    return SplitMachine(1, 1, 1.0, STIFFNESS, 0.0, ANGLE).path_stiffness(BEARING)
+    return SplitMachine(1, 1, 1.0, STIFFNESS, 0.0, 2.0 * np.cos(ANGLE)).path_stiffness(BEARING)
 
 
 @against(
@@ -60,7 +60,7 @@ def test_shares_of_idlers_are_the_printed_ones(idlers, upper):
     late = np.zeros(idlers)
     late[0] = 1e-6 * LATE_UM
     stiffness = path_stiffness()
-    freedom = plane_freedom(idlers, stiffness, (HELD, upper), ANGLE)
+    freedom = plane_freedom(idlers, stiffness, (HELD, upper), (np.cos(ANGLE),) * 2)
     exact = path_forces(TOTAL, stiffness, late, freedom) / TOTAL
     agrees("share of an idler with the bearings of the gears", found, exact, absolute=1e-9)
     if upper == FLOATING:
