@@ -1,6 +1,7 @@
 """Contact and root stress of both flanks of both gears where assembly errors part them."""
 
 from dataclasses import asdict
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
 from facegear.contact.gear_flank import from_arrays, gear_flank, to_arrays
-from facegear.pipeline.stages.contact import contents
+from facegear.pipeline.stages.contact import STIFFNESS_COLUMNS, contents
 from facegear.pipeline.stages.strength import root_contents
 from facegear.quantities import BODIES
 from facegear.schema.base import parse
@@ -100,3 +101,23 @@ def test_without_errors_every_flank_costs_nothing_and_is_the_same(bodies, monkey
     rows = [one.drop(columns=["gear", "flank"]) for _, one in alike["by_flank"].groupby(["gear", "flank"])]
     for other in rows[1:]:
         np.testing.assert_array_equal(other.to_numpy(), rows[0].to_numpy())
+
+
+@pytest.mark.parametrize(("kind", "count"), [("config/helical.yaml", 3), ("config/paper.yaml", 0)])
+def test_flanks_with_a_stiffness_of_their_own_are_stored_with_their_contact(kind, count):
+    """Other flanks of spur teeth keep the stiffness of the upper gear's drive flank."""
+    design = pair(ToothPair.of_config(facegear.load(kind).values["tooth_pair"])).design
+    zeros = pd.DataFrame(np.zeros((2, len(STIFFNESS_COLUMNS))), columns=list(STIFFNESS_COLUMNS))
+    tables = [zeros.assign(k_average_n_per_m=number * 1e8) for number in (1.0, 2.0, 3.0, 4.0)]
+    found = SimpleNamespace(
+        ltca=tables,
+        by_torque=tables,
+        by_flank=tables[0],
+        pressure=[{}],
+        loads={"flank_variant": np.array([[0, 1], [2, 3]])},
+    )
+    table = contents(found, design)["ltca_by_flank"]
+    means = table.groupby(["gear", "flank"])["k_average_n_per_m"].mean().to_dict()
+    every = {("upper", "back"): 2e8, ("lower", "drive"): 3e8, ("lower", "back"): 4e8}
+    assert means == (every if count else {}) and len(table) == 2 * count
+    assert [*table.columns] == [*STIFFNESS_COLUMNS, "gear", "flank"]
