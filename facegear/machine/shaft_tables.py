@@ -10,11 +10,13 @@ import scipy.linalg
 from facegear.arrays import Array
 from facegear.bearings.shaft import RollingShaft
 from facegear.machine.casing_coordinates import casing_motion
-from facegear.machine.drive_line import DriveLine, TurningMass
+from facegear.machine.drive_line import DriveLine, Seat, TurningMass
 from facegear.machine.machine import Machine
 from facegear.machine.rolling_equilibria import ShaftLoads
 from facegear.machine.statics import Equilibria, bearing_forces, bearing_loads
+from facegear.machine.supports import seats_at
 from facegear.parts.shafts import Shaft, deflections
+from facegear.rigid_body import MOTIONS
 
 
 def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
@@ -67,15 +69,17 @@ def shaft_bearing_loads(
     (K, bearings, 5) array
         x, y, z, tilt_x, tilt_y in N and N m, in the order of `bearing_names`.
     """
-    loads = [np.zeros((len(forces), 0, 5))]
+    loads, first = [np.zeros((len(forces), 0, 5))], 0
     for pinion, seat in sorted(line.seats.items()):
+        last = first + len(seat.shaft.reactions)
         if shafts is not None and pinion in shafts:
             loads.append(shafts[pinion].forces)
-            continue
-        about = (moments or {}).get(pinion, np.zeros((len(forces), 2)))
-        loads.append(seat.bearing_loads(np.concatenate([forces[:, pinion], about], axis=1)))
-    whole = np.concatenate(loads, axis=1)
-    return whole if strains is None else whole + strains
+        else:
+            about = (moments or {}).get(pinion, np.zeros((len(forces), 2)))
+            load = seat.bearing_loads(np.concatenate([forces[:, pinion], about], axis=1))
+            loads.append(load if strains is None else load + strains[:, first:last])
+        first = last
+    return np.concatenate(loads, axis=1)
 
 
 def ring_strains(machine: Machine, displacements: Array) -> Array | None:
@@ -93,9 +97,29 @@ def ring_strains(machine: Machine, displacements: Array) -> Array | None:
     (K, bearings, 5) array or None
         N and N m, in the order of `bearing_names`; None for a machine without casing or shafts.
     """
-    if machine.casing is None or machine.drive_line is None:
+    casing, line = machine.casing, machine.drive_line
+    if casing is None or line is None:
         return None
-    return machine.casing.strain_loads(machine.drive_line, casing_motion(machine.linear, displacements))
+    motion = casing_motion(machine.linear, displacements)
+    strains, first = casing.strain_loads(line, motion), 0
+    for pinion, seat in sorted(line.seats.items()):
+        last = first + len(seat.shaft.reactions)
+        if seat.rolling is not None and any(casing.bearing_seats.get(pinion, ())):
+            strains[:, first:last] = _rolling_strains(seat, motion @ casing.ring_motions(pinion).T)
+        first = last
+    return strains
+
+
+def _rolling_strains(seat: Seat, seats: Array) -> Array:
+    """Return the loads (K, bearings, 5) of a shaft on rolling bearings by motions (K, 5 bearings) of its
+    seats, the pinion free and both counted from where the shaft is linearised.
+    """
+    shaft, state = seat.rolling, seat.state
+    assert shaft is not None and state is not None
+    across = state.stiffness[MOTIONS:, :MOTIONS]
+    strain = state.stiffness[MOTIONS:, MOTIONS:] + seat.shaft.reactions.reshape(-1, MOTIONS) @ across.T
+    loads = (seats_at(shaft, state) - seats) @ strain.T
+    return np.asarray(loads.reshape(len(seats), -1, MOTIONS))
 
 
 def tilting_moments(machine: Machine, at_rest: Equilibria) -> dict[int, Array]:

@@ -147,6 +147,8 @@ class WholeMachine:
         grow = self.size - linear.size
         self.rows, self.loads = np.pad(linear.rows, ((0, 0), (0, grow))), np.pad(linear.loads, (0, grow))
         self.arms = np.concatenate([linear.lengths, np.tile(1.0, grow)])
+        self.mass = np.pad(linear.mass, (0, grow))
+        self.places = [(pinion, support, np.eye(self.size)[at]) for pinion, support, at in self.places]
 
     def derivatives(self, q, gaps, lifted=0.0):
         """Energy, gradient and matrix; flanks with less than `lifted` of the largest compression are open."""
@@ -156,11 +158,11 @@ class WholeMachine:
         gradient = self.stiffness @ q + forces @ self.rows - self.loads
         pressed = np.where(over > lifted * over.max(), self.flank_stiffness, 0.0)
         matrix = self.stiffness + (self.rows.T * pressed) @ self.rows
-        for _, support, at in self.places:
-            own, force, tangent = answer(support.bearing, q[at] + support.offset)
+        for _, support, ring in self.places:
+            own, force, tangent = answer(support.bearing, ring @ q + support.offset)
             energy += own
-            gradient[at] += force
-            matrix[np.ix_(at, at)] += tangent
+            gradient += force @ ring
+            matrix += ring.T @ tangent @ ring
         return energy, gradient, matrix
 
     def settle(self, gaps):
@@ -184,19 +186,20 @@ class WholeMachine:
     def forces(self, q, gaps):
         """Forces of the flanks, and of each shaft on its bearings, by pinion."""
         loads = {}
-        for pinion, support, at in self.places:
-            loads.setdefault(pinion, []).append(answer(support.bearing, q[at] + support.offset)[1])
+        for pinion, support, ring in self.places:
+            loads.setdefault(pinion, []).append(answer(support.bearing, ring @ q + support.offset)[1])
         return self.flank_stiffness * np.maximum(self.rows @ q - gaps, 0.0), loads
 
     def frequencies(self, q, gaps):
         """Natural frequencies, Hz, with the coordinates that have no mass condensed."""
         _, _, matrix = self.derivatives(q, gaps, lifted=1e-7)
-        linear = self.machine.linear_without_rolling
-        kept, rest = np.arange(linear.size), np.arange(linear.size, self.size)
+        has_mass = np.diagonal(self.mass) > 0.0
+        kept, rest = np.flatnonzero(has_mass), np.flatnonzero(~has_mass)
         inner = matrix[np.ix_(rest, rest)]
         across = matrix[np.ix_(rest, kept)]
         condensed = matrix[np.ix_(kept, kept)] - across.T @ np.linalg.solve(inner, across)
-        squares = eigh(0.5 * (condensed + condensed.T), linear.mass, eigvals_only=True)
+        mass = self.mass[np.ix_(kept, kept)]
+        squares = eigh(0.5 * (condensed + condensed.T), mass, eigvals_only=True)
         return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
 
 

@@ -18,6 +18,7 @@ from facegear.machine.loaded_modes import MOTION_LIMIT, loaded_modes
 from facegear.machine.machine import Damping, OpenFlanks
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.rolling_seats import rolling_seat
+from facegear.machine.shaft_tables import ring_strains, shaft_bearing_loads
 from facegear.machine.statics import bearing_forces, equilibria, mean_equilibrium
 from facegear.motion.bearing_forces import bearing_history, shaft_bearing_history
 from facegear.motion.steady_state.simulate import build_model, simulate
@@ -48,16 +49,16 @@ MODES = {
 LIVES = {"fixed": (61.8026, 3957.77), "casing": (102.872, 6769.38)}
 
 
-def make_machine(seat, names=("p0", "p0"), factor=1.0, modes=0):
+def make_machine(seat, names=("p0", "p0"), factor=1.0, modes=0, shaft=SHAFT):
     layout = make_small_layout()
-    state = find_shaft_equilibrium(SHAFT, np.array([-14e3, -7e3, 0.0, 0.0, 0.0]))
+    state = find_shaft_equilibrium(shaft, np.array([-14e3, -7e3, 0.0, 0.0, 0.0]))
     body = Body(1.2, 6e-4, (3e8, 3e8, 1e8))
     layout = replace(layout, pinions=(replace(layout.pinions[0], body=body), *layout.pinions[1:]))
-    line = DriveLine(layout, {0: rolling_seat(SHAFT, state, None)}, {})
+    line = DriveLine(layout, {0: rolling_seat(shaft, state, None)}, {})
     casing = None
     if seat == "casing":
         simple = place_on(mount_public(modes, factor), layout)
-        along = layout.mesh_radius + np.array([0.01, 0.12]) - SHAFT.pinion
+        along = layout.mesh_radius + np.array([each.position for each in shaft.supports]) - shaft.pinion
         seats = {**simple.bearing_seats, 0: names}
         casing = Casing(layout, simple.mounted, seats, {}, {0: along})
     return at_mean_load(make_small_machine(layout, casing, drive_line=line))
@@ -182,3 +183,22 @@ def test_motion_of_rolling_bearings_on_the_casing_settles(machines):
     at_rest = mean_equilibrium(machines["casing"])
     expected = at_rest.displacements @ machines["casing"].linear.rows.T
     np.testing.assert_allclose(moved.mean(axis=0), expected[0], atol=1e-7)
+
+
+@pytest.mark.parametrize("names", [("p0", "p0", "p0"), ("p0", "", "p1")])
+def test_seats_strain_a_shaft_on_three_rolling_bearings(names):
+    """Loads by tangents, after a small change of the torque, are those of a new equilibrium."""
+    third = Support(0.065, P3, np.zeros(5))
+    shaft = replace(SHAFT, supports=(*SHAFT.supports, third))
+    machine = make_machine("casing", names=names, shaft=shaft)
+    changes = []
+    for torques in (machine.torques, 1.001 * machine.torques):
+        loaded = replace(machine, torques=torques)
+        at_rest = mean_equilibrium(loaded)
+        forces, strains = bearing_forces(loaded, at_rest), ring_strains(loaded, at_rest.displacements)
+        tangent = shaft_bearing_loads(machine.drive_line, forces, strains=strains)
+        changes.append((tangent[0], at_rest.shafts[0].forces[0]))
+    (tangent, exact), (later_tangent, later_exact) = changes
+    np.testing.assert_allclose(tangent, exact, atol=1e-6)
+    largest = np.abs(later_exact - exact).max()
+    np.testing.assert_allclose(later_tangent - tangent, later_exact - exact, atol=5e-3 * largest)
