@@ -25,6 +25,8 @@ ROUNDINGS = 8.0
 STEPS, STEPS_WITHOUT_GAIN = 120, 8
 """Newton steps after which a search is given up, and after which it ends near balance where none of them came
 closer: rounding decides there, and the account of all forces afterwards."""
+STARTS, STALLED = 3, 1e-12
+"""Searches at most, and force out of balance over the largest one, dimensionless, that asks for another."""
 NEARLY = 1e-9
 """Force out of balance over the largest force, dimensionless, from which on rounding may decide."""
 FIRST_TIE, TIE_FALL, LAST_TIE = 1e-4, 0.03, 1e-11
@@ -280,10 +282,20 @@ def imbalance(problem: RollingProblem, states: RollingStates) -> Array:
 
 
 def _find_together(problem: RollingProblem, coordinates: Array, inner: Sequence[Array]) -> RollingStates:
-    """Return the equilibria of K positions whose searches take their steps together."""
+    """Return the equilibria of K positions; a search whose tie faded too soon begins again where it ended."""
     active = np.arange(len(coordinates))
     states = evaluate(problem, active, coordinates, inner)
-    least, since = np.full(active.size, np.inf), np.zeros(active.size, int)
+    for _ in range(STARTS):
+        _descend(problem, states, active)
+        active = np.flatnonzero(imbalance(problem, states) > STALLED * states.size + states.rounding)
+        if not active.size:
+            break
+    return states
+
+
+def _descend(problem: RollingProblem, states: RollingStates, active: Integers) -> None:
+    """Take Newton steps from the positions `active` of some states, in place."""
+    least, since = np.full(len(states.size), np.inf), np.zeros(len(states.size), int)
     tie = FIRST_TIE
     for _ in range(STEPS):
         worst = imbalance(problem, states)
@@ -297,7 +309,6 @@ def _find_together(problem: RollingProblem, coordinates: Array, inner: Sequence[
         current = states.select(active)
         states.put(active, _search_line(problem, active, current, *_step(problem, active, current, tie)))
         tie = max(TIE_FALL * tie, LAST_TIE)
-    return states
 
 
 def _step(
