@@ -17,7 +17,7 @@ import facegear
 from facegear.build.cases import expand_cases
 from facegear.build.face_limits import FaceNumbers, limits_in_words
 from facegear.build.load import load_config, read_layers
-from facegear.checking import check_config, refused_teeth
+from facegear.checking import check_config
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.exchange.rexs_pinions import RexsPinions, known_of_rexs
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
@@ -203,15 +203,13 @@ def _new(options: argparse.Namespace) -> int:
         draft = Path(folder) / options.config.name
         draft.write_text(machine.text, encoding="utf-8")
         try:
-            cases = expand_cases(load_config(draft))
+            expand_cases(load_config(draft))
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
     _say_if_new(options.config.parent)
     with atomic_path(options.config) as temporary:
         temporary.write_text(machine.text, encoding="utf-8")
     print(*rexs.notes, *machine.expectations, sep="\n")
-    for line in refused_teeth(next(iter(cases.values())), cases):
-        print(f"{options.config}: not computed yet: {line}")
     print(f"{options.config}: written; `facegear report {options.config}` computes it")
     return 0
 

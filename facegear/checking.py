@@ -8,11 +8,8 @@ from typing import Any
 from facegear.build.cases import expand_cases
 from facegear.build.config import Config
 from facegear.build.early_checks import EarlyFindings, machine_findings, pair_findings
-from facegear.build.kinds_of_teeth import refused_keys, refused_moves
 from facegear.build.notes import notes
-from facegear.pipeline.needs import idle_keys, stages_before
-from facegear.pipeline.stage import Case
-from facegear.pipeline.table import STAGES
+from facegear.pipeline.needs import idle_keys
 
 MOST_PAIRS = 4
 """Different tooth pairs of a config whose geometry is analysed, at about 0.3 s each."""
@@ -63,8 +60,7 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
         case: [*_geometry(case, cases), machine_findings(values)] for case, values in cases.items()
     }
     by_case = {
-        case: [*refused_teeth(cases[case], cases), *(line for part in parts for line in part.failures)]
-        for case, parts in parts_by_case.items()
+        case: [line for part in parts for line in part.failures] for case, parts in parts_by_case.items()
     }
     remarks = {
         case: [line for part in parts for line in part.remarks] for case, parts in parts_by_case.items()
@@ -77,30 +73,6 @@ def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfi
     left = [f"geometry: {pairs - MOST_PAIRS} more tooth pairs of the studies are not looked at"]
     lines = (*facts, *_lines(remarks), *_lines(note_lines, "note: "), *idle, *left * (pairs > MOST_PAIRS))
     return CheckedConfig(tuple(cases), tuple(_lines(by_case)), lines)
-
-
-def refused_teeth(values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """Find the keys by which the teeth of a case are of a kind that stages of its run cannot take yet.
-
-    Parameters
-    ----------
-    values : mapping
-        Plain values of the case.
-    cases : mapping
-        Plain values of all cases of its config by id.
-
-    Returns
-    -------
-    list of str
-        One line for each key that the pair has, or that samples or designs move, with its value, what is
-        allowed and the first stage that refuses it.
-    """
-    case = Case(values, cases)
-    wanted_stages = [name for name, stage in STAGES.items() if stage.condition and stage.condition(case)]
-    names = dict.fromkeys(before for name in wanted_stages for before in stages_before(name, values)[::-1])
-    kind_errors = refused_keys(names, values["tooth_pair"])
-    errors = [*kind_errors.values(), *refused_moves(names, values)]
-    return [str(error) for error in errors]
 
 
 def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:

@@ -25,7 +25,6 @@ from facegear.build.checks import (
     with_backlash,
 )
 from facegear.build.elastic_bodies import check_bodies, elastic_gears
-from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.rolling import check_preloads
@@ -202,7 +201,7 @@ class Config(Section):
             requirement = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, requirement)
         has_contact = self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication
-        if has_contact and not refused_keys(["contact"], pair.model_dump()):
+        if has_contact:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             contact = self.contact_used

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from facegear.build.kinds_of_teeth import refused_keys
 from facegear.build.lumped_model import machine
 from facegear.build.machine_layout import lumped_sections
 from facegear.build.strength import rating_request
@@ -78,7 +77,7 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
     EarlyFindings
         Failures, remarks, and one line of facts; no lines for a pair without bodies.
     """
-    if values["tooth_pair"]["pinion"] is None or refused_keys(["geometry"], values["tooth_pair"]):
+    if values["tooth_pair"]["pinion"] is None:
         return EarlyFindings((), (), ())
     design = pair_design(ToothPair.of_config(values["tooth_pair"]))
     try:
@@ -127,7 +126,7 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
     EarlyFindings
         Remarks only; no lines for a config without a machine.
     """
-    if values["transmission"] is None or refused_keys(["ratings"], values["tooth_pair"]):
+    if values["transmission"] is None:
         return EarlyFindings((), (), ())
     section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
     stiffness = Harmonics(np.zeros(1), np.array([_stiffness(values)]))
@@ -171,7 +170,7 @@ def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], l
     standard does not know. Both are empty without the teeth's part of section `strength`.
     """
     section = values["strength"]
-    if section is None or section["pinion"] is None or refused_keys(["rating"], values["tooth_pair"]):
+    if section is None or section["pinion"] is None:
         return [], []
     missing_kinds, remarks = unknown_to_standard(design), []
     try:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from facegear.build.cases import expand_cases
-from facegear.build.kinds_of_teeth import require_kind
 from facegear.build.tooth_pair import pair_design
 from facegear.door.case import Case
 from facegear.errors import extras_named, file_path, require_choice
@@ -24,13 +23,6 @@ if TYPE_CHECKING:
 
 ENDINGS = (".step", ".stp", ".stl", ".glb", ".fmu", ".rexs", ".csv")
 """Endings of the files that `Gearbox.export` writes."""
-
-EXPORTED_STAGES = {
-    **dict.fromkeys((".step", ".stp", ".stl"), "cad"),
-    ".glb": "scene",
-    ".csv": "topography",
-}
-"""Names in `SPUR_ONLY` of files that no chain of stages makes, by their ending."""
 
 
 def report(self: Case, path: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
@@ -162,8 +154,6 @@ def export(self: Case, path: str | Path, body: str = "pinion", teeth: int | None
     """
     path = file_path(path)
     ending = require_choice(path.suffix.lower(), ENDINGS, "ending of the path")
-    if ending in EXPORTED_STAGES:
-        require_kind((EXPORTED_STAGES[ending],), self._values["tooth_pair"])
     if ending == ".fmu":
         # it loads all kernels of the motion, for one ending of many
         from facegear.exchange.fmu import write_fmu

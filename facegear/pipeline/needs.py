@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from facegear.build.kinds_of_teeth import refused_moves, require_kind
 from facegear.errors import ConfigError
 from facegear.pipeline.stage import Case, ComputedValue, Need, Needs, Values
 from facegear.pipeline.table import STAGES
@@ -78,28 +77,6 @@ def require_section(name: str | None, values: Values) -> None:
     section = STAGES[name].section if name else ""
     if section and value_at(values, section) is None:
         raise ConfigError(section, None, f"given, as rule {name} needs it")
-
-
-def require_teeth(name: str | None, values: Values) -> None:
-    """Raise ConfigError for teeth of a kind that a stage, or one from which it takes files, cannot take yet.
-
-    Parameters
-    ----------
-    name : str or None
-        Name of the stage, None for no stage.
-    values : Values
-        Plain values of a whole config.
-
-    Raises
-    ------
-    ConfigError
-        With the key of the teeth, its value, what is allowed, and the stages that refuse it.
-    """
-    if name in STAGES:
-        stages = stages_before(name, values)[::-1]
-        require_kind(stages, values["tooth_pair"])
-        for error in refused_moves(stages, values):
-            raise error
 
 
 def stages_before(name: str, values: Values) -> list[str]:

@@ -3,10 +3,6 @@
 import pytest
 from projects import ROOT, dry_run, rules_in
 
-from facegear.build.cases import expand_cases
-from facegear.build.load import load_config
-from facegear.checking import refused_teeth
-
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("dry_runs")]
 
 
@@ -38,9 +34,6 @@ def test_the_running_machine_is_followed_where_runouts_turn(config, followed):
 
 
 @pytest.mark.parametrize("config", sorted(path.name for path in (ROOT / "config").glob("*.yaml")))
-def test_dry_run_of_every_config_is_clean_or_refuses_its_teeth(config):
-    cases = expand_cases(load_config(ROOT / "config" / config))
-    refused = refused_teeth(next(iter(cases.values())), cases)
+def test_dry_run_of_every_config_is_clean(config):
     done = dry_run("--configfile", str(ROOT / "config" / config))
-    assert (done.returncode == 0) == (not refused) and "Traceback" not in done.stderr, done.stderr
-    assert not refused or refused[0].partition(": must be")[0] in done.stderr
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr

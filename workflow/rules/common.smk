@@ -18,7 +18,7 @@ from facegear.build.cases import expand_cases
 from facegear.build.load import base_path, load_config
 from facegear.build.notes import notes
 from facegear.errors import FacegearError
-from facegear.pipeline.needs import require_section, require_teeth, resolved_needs, shared_sources, value_at
+from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at
 from facegear.pipeline.rows.common_needs import MACHINE
 from facegear.pipeline.stage import FIGURES, Case, From
 from facegear.pipeline.table import STAGES

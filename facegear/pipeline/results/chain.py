@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Never, TypeVar
 
-from facegear.pipeline.needs import require_teeth, resolved_needs, shared_sources
+from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.outcome import Outcome
 from facegear.pipeline.report_tables import REPORT_TABLES, asked_for, table_name
 from facegear.pipeline.results.base import Result, StageOutput
@@ -81,13 +81,7 @@ class Chain:
         -------
         StageOutput
             Output of the stage.
-
-        Raises
-        ------
-        ConfigError
-            For teeth of a kind that the stage, or one before it, cannot take yet.
         """
-        require_teeth(name, self.values)
         return self.store.output(name, self.values, lambda: self.compute(name, **extra_arguments))
 
     def arguments(self, name: str) -> dict[str, Any]:
@@ -104,7 +98,6 @@ class Chain:
         dict[str, Any]
             Arguments by name.
         """
-        require_teeth(name, self.values)
         stage = STAGES[name]
         return {**self.upstream_arguments(stage.upstream), **resolved_needs(stage.needs, self.case)}
 

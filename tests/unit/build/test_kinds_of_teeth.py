@@ -1,4 +1,4 @@
-"""Keys of helical, tapered, offset and asymmetric teeth, and the stages that refuse them before any work."""
+"""Keys of helical, tapered, offset and asymmetric teeth."""
 
 from dataclasses import asdict
 
@@ -8,14 +8,10 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves
 from facegear.build.load import config_of
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError
-from facegear.pipeline.needs import require_teeth
 from facegear.pipeline.stages.teeth import geometry
-from facegear.pipeline.table import STAGES
 from facegear.schema.base import parse
 
 PER_MM = {"P2": 65.055955826}
@@ -83,58 +79,6 @@ def test_one_angle_for_both_flanks_is_that_angle():
     assert pair_design(parse(ToothPair, both)) == pair_design(parse(ToothPair, one))
 
 
-def test_spur_only_names_stages():
-    assert set(SPUR_ONLY) <= set(STAGES)
-    assert all(set(keys) <= set(ALL_KINDS) for keys in SPUR_ONLY.values())
-
-
-@pytest.mark.parametrize(
-    ("changes", "line"),
-    [
-        ({"helix_angle_deg": 5.0}, "tooth_pair.helix_angle_deg = 5.0: must be 0, as stage "),
-        ({"taper_angle_deg": 1.0}, "tooth_pair.taper_angle_deg = 1.0: must be 0, as stage "),
-        ({"shaft_angle_deg": 91.0}, "tooth_pair.shaft_angle_deg = 91.0: must be 90, as stage "),
-        ({"offset_mm": -1.0}, "tooth_pair.offset_mm = -1.0: must be 0, as stage "),
-        (
-            {"assembly": {"pinion_axial_um": 10.0}},
-            "tooth_pair.assembly.pinion_axial_um = 10.0: must be 0, as stage ",
-        ),
-        (
-            {"pressure_angle_deg": {"drive": 25, "coast": 24}},
-            "tooth_pair.pressure_angle_deg = {'drive': 25, 'coast': 24}: must be one number for both flanks",
-        ),
-        ({"middle": 263.0}, "tooth_pair.pinion.middle_mm = 263.0: must be null or 262.5, as stage "),
-    ],
-)
-def test_a_stage_that_takes_spur_teeth_alone_refuses_others_by_key(changes, line):
-    gearbox = facegear.example()
-    pair = {**gearbox.values["tooth_pair"], **{key: changes[key] for key in changes if key != "middle"}}
-    pair["assembly"] = {**gearbox.values["tooth_pair"]["assembly"], **changes.get("assembly", {})}
-    if "middle" in changes:
-        pair["pinion"] = {**pair["pinion"], "middle_mm": changes["middle"]}
-    (error,) = refused_keys(SPUR_ONLY, pair).values()
-    assert str(error).startswith(line)
-    assert not refused_keys(SPUR_ONLY, gearbox.values["tooth_pair"])
-
-
-def test_the_door_refuses_before_any_work(monkeypatch):
-    monkeypatch.setitem(SPUR_ONLY, "compliance", ALL_KINDS)
-    gearbox = facegear.load(make_config("P1"), results=None)
-    with pytest.raises(ConfigError, match=r"helix_angle_deg = 15\.0: must be 0, as stage compliance"):
-        gearbox.contact()
-
-
-def test_the_check_of_a_config_names_the_stages_that_refuse(monkeypatch):
-    monkeypatch.setitem(SPUR_ONLY, "contact", ALL_KINDS)
-    values = make_config("P1")
-    failures = check_config(config_of(values), values).failures
-    assert [
-        line
-        for line in failures
-        if line.startswith("tooth_pair.helix_angle_deg = 15.0: must be 0, as stage ")
-    ]
-
-
 BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
 STRENGTH = {
     "pinion": BODY,
@@ -152,25 +96,9 @@ def test_a_check_says_which_teeth_the_standard_cannot_rate(name, kinds):
     assert not findings.failures and (expected in lines) == bool(kinds)
 
 
-@pytest.mark.parametrize("moved", ["assembly.pinion_axial_um", "helix_angle_deg", "pressure_angle_deg.coast"])
-def test_a_search_may_not_move_teeth_to_a_kind_that_its_stage_refuses(moved, monkeypatch):
-    monkeypatch.setitem(SPUR_ONLY, "search_island", ALL_KINDS)
-    sets = ["tooth_pair.pressure_angle_deg", f"tooth_pair.{moved}"]
-    values = {"tolerances": None, "search": {"variables": [{"sets": sets}]}}
-    (error,) = refused_moves(["search_island"], values)
-    assert str(error).startswith(f"search.variables.sets = 'tooth_pair.{moved}': must be another key")
-    assert not refused_moves(["contact"], values)
-
-
-def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
+def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config():
     values = facegear.load("config/microgeometry.yaml").config.model_dump(mode="json")
     cause = values["tolerances"]["causes"][0]
     values["tolerances"]["causes"] = [{**cause, "moves": {"tooth_pair.assembly.pinion_axial_um": 1}}]
     config = config_of(values)
     assert config.tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
-    monkeypatch.setitem(SPUR_ONLY, "tolerances_chunk", ALL_KINDS)
-    with pytest.raises(ConfigError, match=r"causes\.moves = .*pinion_axial_um.*: must be another key"):
-        require_teeth("tolerances_chunk", config.model_dump(mode="json"))
-    for name in ("tolerances_chunk", "compliance", "contact"):
-        monkeypatch.setitem(SPUR_ONLY, name, ())
-    require_teeth("tolerances_chunk", config.model_dump(mode="json"))
