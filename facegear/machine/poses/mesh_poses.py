@@ -156,14 +156,14 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
     offset, shift, angle, _ = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
     number_of_label = {label: number for number, label in enumerate(linear.labels)}
     parts = [_GearParts.of_gear(layout, gear, middle) for gear in range(len(layout.gears))]
+    names_of_tilts = [[f"{pinion.name}:{letter}" for letter in TILT_LETTERS] for pinion in layout.pinions]
     tilts_of_pinions = [
-        [number_of_label.get(f"{pinion.name}:{letter}") for letter in TILT_LETTERS]
-        for pinion in layout.pinions
+        [number_of_label[name] for name in names if name in number_of_label] for names in names_of_tilts
     ]
     for mesh, (i, g) in enumerate(layout.meshes):
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
         rows[:, mesh, pinion : pinion + 3] = parts[g].pinion_shifts
-        if None not in tilts_of_pinions[i]:
+        if tilts_of_pinions[i]:
             rows[:, mesh, tilts_of_pinions[i]] = parts[g].pinion_tilts
         to_pinion = _to_pinion(layout.angles[i])
         rows[:, mesh, gear : gear + 3] = parts[g].gear_shifts @ to_pinion
