@@ -239,7 +239,8 @@ def pose_at(
         loaded_surface = surfaces[loaded_flanks[mesh]]
         loaded_surface.require(name, *at)
         if forces[mesh] != 0.0:
-            factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
+            back = bool(forces[mesh] < 0.0)
+            factor[mesh] = _factor(machine, surface, loaded_surface, mesh, at, back, load)
         energy_of_pair = (
             mesh_energy(loaded_surface, *at) if load is None else linear_energy(loaded_surface, load, *at)
         )
@@ -303,6 +304,7 @@ def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displace
 def _factor(
     machine: Machine,
     surface: PoseSurface,
+    loaded_surface: PoseSurface,
     mesh: int,
     at: tuple[float, float, float],
     back: bool,
@@ -310,23 +312,22 @@ def _factor(
 ) -> float:
     """Return the factor of the pose on the stiffness of a mesh, dimensionless.
 
-    at: torque of the mesh on its pinion (N m), unloaded path (m) and error of the shaft angle (rad);
-    back: whether the back flank carries; load: torque (N m) at which stiffnesses are taken, None for that
-    of the mesh. Forces that follow the load are all multiplied by the factor, and then lie at another
-    level of their law: it is found by iteration as the factor with which the mesh is compressed at its
-    load as the surface says.
+    loaded_surface: that of the flank that carries; at: torque of the mesh on its pinion (N m), unloaded
+    path (m) and error of the shaft angle (rad); back: whether the back flank carries; load: torque (N m) at
+    which stiffnesses are taken, None for that of the mesh. Forces that follow the load are all multiplied
+    by the factor, and then lie at another level of their law: it is found by iteration as the factor with
+    which the mesh is compressed at its load as the surface says.
     """
-    torque, reference_stiffness = at[0] if load is None else load, surface.reference_stiffness
-    surface_of_flank = flank_surfaces(machine, surface)[mesh + len(machine.layout.meshes) * back]
-    stiffness = surface_of_flank.at(STIFFNESS, torque, *at[1:])
+    torque = at[0] if load is None else load
+    stiffness = loaded_surface.at(STIFFNESS, torque, *at[1:])
     if machine.tables is None:
-        return stiffness / reference_stiffness
+        return stiffness / surface.reference_stiffness
     rest, mesh_factor = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
     factor = 1.0
     for _ in range(FACTOR_STEPS):
         level = torque / (mesh_factor * factor) if load is None else load
-        level = min(level, float(surface_of_flank.nodes.torques[-1]))
-        before, factor = factor, stiffness / surface_of_flank.at(STIFFNESS, level, *rest)
+        level = min(level, float(loaded_surface.nodes.torques[-1]))
+        before, factor = factor, stiffness / loaded_surface.at(STIFFNESS, level, *rest)
         if abs(factor - before) < SAME_FACTOR:
             break
     return factor

@@ -159,17 +159,21 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
     """
     rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
     number_of_label = {label: number for number, label in enumerate(linear.labels)}
+    parts = [_GearParts.of_gear(layout, gear, middle) for gear in range(len(layout.gears))]
+    names_of_tilts = [[f"{pinion.name}:{letter}" for letter in TILT_LETTERS] for pinion in layout.pinions]
+    tilts_of_pinions = [
+        [number_of_label[name] for name in names if name in number_of_label] for names in names_of_tilts
+    ]
     for mesh, (i, g) in enumerate(layout.meshes):
-        shifts, turns = _pinion_parts(layout, g, middle)
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-        rows[:, mesh, pinion : pinion + 3] = shifts
-        tilts = [number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS]
-        if None not in tilts:
-            rows[:, mesh, tilts] = turns
-        shifts, turns = _gear_parts(layout, i, g, middle)
-        rows[:, mesh, gear : gear + 3] = shifts
+        rows[:, mesh, pinion : pinion + 3] = parts[g].pinion_shifts
+        if tilts_of_pinions[i]:
+            rows[:, mesh, tilts_of_pinions[i]] = parts[g].pinion_tilts
+        to_pinion = _to_pinion(layout.angles[i])
+        rows[:, mesh, gear : gear + 3] = parts[g].gear_shifts @ to_pinion
         if g in layout.first_tilts:
-            rows[:, mesh, layout.first_tilts[g] : layout.first_tilts[g] + 2] = turns
+            tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
+            rows[:, mesh, tilts] = parts[g].gear_turns @ to_pinion[:, :2]
     if linear.seat_tilts is not None:
         _add_seat_tilts(linear, layout, middle, rows, with_pinions)
     if linear.slopes is not None and layout.kind is not None:
@@ -219,42 +223,48 @@ def _axes(layout: Layout, gear: int) -> RelativeMotion:
     return RelativeMotion(layout.pinion_teeth / layout.gear_teeth)
 
 
-def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
-    """Return the derivatives (4, 3) of PARTS by motions of the middle of a pinion's face and by its turns, in
-    the mesh frame, m/m and m/rad.
+@dataclass(frozen=True, eq=False)
+class _GearParts:
+    """Derivatives of PARTS at one gear, m/m, m/rad and rad/rad.
+
+    pinion_shifts (4, 3), pinion_tilts (4, 2): by motions along x, y, z of a pinion and by tilts about x, y.
+    gear_shifts, gear_turns (4, 3): by motions of the gear along tangent, its axis and outwards, and by its
+    turns about these directions.
     """
-    sine, cosine, (_, _, up) = axes.sine, axes.cosine, axes.basis
-    by_shift, by_turn = np.zeros((2, len(PARTS), 3))
-    by_shift[0, 0], by_shift[1, 2], by_shift[3, 1] = 1.0, 1.0, 1.0 / sine
-    by_turn[0], by_turn[2, 0], by_turn[3] = middle * up, 1.0, -axes.offset / sine**2 * up
-    by_shift[1] += cosine * by_shift[3]
-    by_turn[1] = cosine * by_turn[3]
-    return by_shift, by_turn
+
+    pinion_shifts: Array
+    pinion_tilts: Array
+    gear_shifts: Array
+    gear_turns: Array
+
+    @classmethod
+    def of_gear(cls, layout: Layout, gear: int, middle: float) -> "_GearParts":
+        """Return the derivatives at a gear; middle: place of the middle of the pinion's face, m."""
+        axes, to_mesh = _axes(layout, gear), to_mesh_frame(layout.gears[gear].sign)
+        sine, cosine, up = axes.sine, axes.cosine, axes.basis[2]
+        by_shift, by_turn = np.zeros((2, len(PARTS), 3))
+        by_shift[0, 0], by_shift[1, 2], by_shift[3, 1] = 1.0, 1.0, 1.0 / sine
+        by_turn[0], by_turn[2, 0], by_turn[3] = middle * up, 1.0, -axes.offset / sine**2 * up
+        by_shift[1] += cosine * by_shift[3]
+        by_turn[1] = cosine * by_turn[3]
+        x, y, z = middle_place(middle, axes) + [0.0, 0.0, layout.tilt_distance(gear)]
+        # a turn of the gear moves the middle of the pinion's face by the turn times the arm (x, y, z)
+        at_middle = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+        of_pinion = axes.basis.T @ to_mesh
+        return cls(
+            pinion_shifts=by_shift @ of_pinion,
+            pinion_tilts=by_turn @ of_pinion[:, :2],
+            gear_shifts=-by_shift @ to_mesh,
+            gear_turns=-(by_shift @ at_middle + by_turn) @ to_mesh,
+        )
 
 
-def _pinion_parts(layout: Layout, gear: int, middle: float) -> tuple[Array, Array]:
-    """Return the derivatives of PARTS at a gear by motions (4, 3) along x, y, z of a pinion and by its tilts
-    (4, 2) about x and y.
+def _to_pinion(angle: float) -> Array:
+    """Return the matrix (3, 3) from x, y, z of a gear to tangent, gear axis and outwards at a pinion, whose
+    distribution angle is `angle`, rad.
     """
-    axes = _axes(layout, gear)
-    to_mesh = axes.basis.T @ to_mesh_frame(layout.gears[gear].sign)
-    by_shift, by_turn = _parts(axes, middle)
-    return by_shift @ to_mesh, by_turn @ to_mesh[:, :2]
-
-
-def _gear_parts(layout: Layout, pinion: int, gear: int, middle: float) -> tuple[Array, Array]:
-    """Return the derivatives of PARTS of a mesh by motions (4, 3) along x, y, z of its gear and by tilts
-    (4, 2) of the gear about x and y.
-    """
-    axes, at = _axes(layout, gear), layout.angles[pinion]
-    cosine, sine = np.cos(at), np.sin(at)
-    to_mesh = to_mesh_frame(layout.gears[gear].sign) @ np.array(
-        [[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]]
-    )
-    by_shift, by_turn = _parts(axes, middle)
-    arm = middle_place(middle, axes) + np.array([0.0, 0.0, layout.tilt_distance(gear)])
-    at_middle = np.cross(to_mesh[:, :2], arm, axisa=0).T
-    return -by_shift @ to_mesh, -by_shift @ at_middle - by_turn @ to_mesh[:, :2]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
 
 
 def _add_seat_tilts(
@@ -263,10 +273,12 @@ def _add_seat_tilts(
     """Add to `rows` (4, meshes, n) what bodies that tilt with their seats on a casing add, in place."""
     assert linear.seat_tilts is not None
     tilts = linear.over_all(linear.seat_tilts)
+    parts = [_GearParts.of_gear(layout, gear, middle) for gear in range(len(layout.gears))]
     for mesh, (i, g) in enumerate(layout.meshes):
-        rows[:, mesh] += _gear_parts(layout, i, g, middle)[1] @ tilts[len(layout.pinions) + g]
+        gear_tilts = parts[g].gear_turns @ _to_pinion(layout.angles[i])[:, :2]
+        rows[:, mesh] += gear_tilts @ tilts[len(layout.pinions) + g]
         if with_pinions:
-            rows[:, mesh] += _pinion_parts(layout, g, middle)[1] @ tilts[i]
+            rows[:, mesh] += parts[g].pinion_tilts @ tilts[i]
 
 
 def rim_levers(layout: Layout, middle: float) -> Array:
