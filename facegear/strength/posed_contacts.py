@@ -234,6 +234,26 @@ class PosedContacts:
             meshes = [max(on, key=self.torque.__getitem__)]
         return [(mesh, flank) for mesh in meshes for flank in flanks]
 
+    def of_body(self, body: str, contacts: Sequence[tuple[str, str]]) -> dict[tuple[str, str], FlankContact]:
+        """Return the contacts that a gear has on both its flanks, in all its meshes.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`, as which the gear is rated.
+        contacts : Sequence[tuple[str, str]]
+            Mesh and flank of some contacts of that gear.
+
+        Returns
+        -------
+        dict[tuple[str, str], FlankContact]
+            Contacts by mesh and flank.
+        """
+        part = BODIES.index(body)
+        names = {mesh.rsplit("/", 1)[part] for mesh, _ in contacts}
+        meshes = [mesh for mesh in self.contacts if mesh.rsplit("/", 1)[part] in names]
+        return {(mesh, flank): self.contacts[mesh][flank] for mesh in meshes for flank in FLANKS}
+
     def stresses(
         self, duty: FlankDuty, contact_poses: Mapping[tuple[int, str, str], ContactPose]
     ) -> LoadStresses:

@@ -399,19 +399,19 @@ def rating(
     ratings: list[FailureRating] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
-        of_loads, by_flank_met = None, contacts
-        contacts_met = met_by(duty, gears)
+        of_loads, contacts_met = None, met_by(duty, gears)
+        of_body = {(gear, flank): contacts[gear, flank] for gear, _ in contacts_met for flank in FLANKS}
         if at_pose is not None and stands is not None:
             contacts_met, of_loads = at_pose.met_by(duty), at_pose.stresses(duty, stands)
-            by_flank_met = {
-                (mesh, flank): at_pose.contacts[mesh][flank] for mesh, _ in contacts_met for flank in FLANKS
-            }
-        worst_at = worst_contact(duty, {at: by_flank_met[at] for at in contacts_met})
-        roots = {duty.gear: by_flank_met[worst_at].roots[duty.gear]}
-        pressure = worst_pressure([by_flank_met[at] for at in contacts_met])
+            of_body = at_pose.of_body(duty.gear, contacts_met)
+        worst_at = worst_contact(duty, {at: of_body[at] for at in contacts_met})
+        roots = {duty.gear: of_body[worst_at].roots[duty.gear]}
+        pressure = worst_pressure([of_body[at] for at in contacts_met])
         # flanks on other bodies bend teeth back in another way than the mirror image of the rated contact
         (other_flank,) = set(FLANKS) - {worst_at[1]}
-        opposite = [by_flank_met[met_at, other_flank].roots[duty.gear] for met_at, _ in contacts_met]
+        opposite = [
+            contact.roots[duty.gear] for (_, flank), contact in of_body.items() if flank == other_flank
+        ]
         ways = rate(
             pair_at(design, GEARS[0], worst_at[1]),
             roots,

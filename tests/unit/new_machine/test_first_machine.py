@@ -18,7 +18,7 @@ from facegear.new_machine.first_machine import first_machine, load_concentration
 from facegear.new_machine.teeth import choose_teeth
 from facegear.new_machine.wishes import MachineWishes, ToothWishes
 from facegear.schema.yaml_file import read_yaml
-from facegear.strength.safety import pinion_form
+from facegear.strength.cylindrical import pinion_form
 from facegear.teeth.analysis import analyse, path_curvatures
 
 
