@@ -116,10 +116,10 @@ class Draft:
         return SplitMachine(
             inputs=self.wishes.pinions,
             idlers=self.wishes.idlers,
-            input_force=self.wishes.torque_n_m / design.pinion_base_radius,
+            input_force=self.wishes.torque_n_m / design.normal_arm,
             mesh_stiffness=self.stiffness,
             backlash=design.pinion.thinning,
-            idler_push=2.0 * cos(design.pressure_angle),
+            idler_push=2.0 * cos(design.pressure_angle) * cos(design.helix_angle),
         )
 
     def stiff_bearings(self) -> Bearings:

@@ -262,7 +262,7 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
     curvature = float(curvatures[np.abs(roll - tan(design.pressure_angle)).argmin()])
     if curvature <= 0.0:
         return 1.0
-    approach_of_force = mesh_torque / design.pinion_base_radius / STIFFNESS
+    approach_of_force = mesh_torque / design.normal_arm / STIFFNESS
     nearest = min(max(0.0, inner), outer)
     first_touch = 0.5 * curvature * nearest**2
 

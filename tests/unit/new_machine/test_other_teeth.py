@@ -1,11 +1,15 @@
 """A machine to start from with helical, tapered, offset or asymmetric teeth: limits and forces."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from facegear.build.load import config_of
+from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import pair_design
 from facegear.errors import ConfigError, FacegearError
+from facegear.new_machine.draft import Draft
 from facegear.new_machine.first_machine import first_machine
 from facegear.new_machine.wishes import MachineWishes
 from facegear.schema.yaml_file import read_yaml
@@ -53,6 +57,22 @@ def test_what_to_expect_names_the_axial_force_of_each_flank():
     lines = first_machine(make_wishes(helix_angle_deg=15.0)).expectations
     axial = 500.0 * np.tan(np.radians(15)) / (23 * 3.75e-3 / 2 / np.cos(np.radians(15)))
     assert f"-{axial:.0f} N outwards" in lines[1] and f" {axial:.0f} N outwards" in lines[2]
+
+
+@pytest.mark.parametrize("kind", KINDS[:5], ids=lambda kind: ",".join(kind))
+def test_load_sharing_of_the_draft_counts_the_forces_of_its_own_teeth(kind, tmp_path):
+    """Along the tangent both flanks of an idler push as its torque over the pitch radius does."""
+    path = tmp_path / "own.yaml"
+    path.write_text(first_machine(make_wishes(**kind)).text)
+    design = pair_design(config_of(read_yaml(path)).tooth_pair)
+    teeth = SimpleNamespace(design=design)
+    wishes = SimpleNamespace(pinions=2, idlers=3, torque_n_m=500.0)
+    form = Draft.closed_form(SimpleNamespace(teeth=teeth, wishes=wishes, stiffness=4e8))
+    lines = [contact_line(design.family, side) for side in SIDES]
+    arms = ToothNumbers.of_design(design).kind.normal_arms
+    tangential = [abs(line.normal[0]) * arms[0] / arm for line, arm in zip(lines, arms, strict=True)]
+    assert form.input_force == pytest.approx(500.0 / arms[0], rel=1e-12)
+    assert form.idler_push == pytest.approx(sum(tangential), rel=1e-12)
 
 
 def test_spur_values_of_the_new_keys_change_nothing():
