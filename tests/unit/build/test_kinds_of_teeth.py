@@ -10,7 +10,7 @@ import facegear
 from facegear.build.checks import geometric_backlash
 from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves, refusing_names
 from facegear.build.load import config_of
-from facegear.build.tooth_pair import ToothPair, pair_design
+from facegear.build.tooth_pair import ToothPair, check_lower_gear, pair_design
 from facegear.checking import check_config
 from facegear.errors import ConfigError
 from facegear.pipeline.needs import require_teeth
@@ -168,3 +168,12 @@ def test_friction_that_disturbs_the_motion_is_refused_where_its_loss_alone_is_no
         values["lubrication"]["friction"]["effect"] = effect
         names = refusing_names(["lubrication"], values)
         assert ("taper_angle_deg" in refused_keys(names, values["tooth_pair"])) == refused
+
+
+def test_radii_below_undercut_of_a_lower_gear_that_is_another_one_are_refused_by_key():
+    """Contact of the lower gear ended in Newton steps of its flank, long after the check of the config."""
+    section = parse(ToothPair, public_section("P4"))
+    refused = r"tooth_pair\.face_gear\.inner_radius_mm = 231\.0: must be between 242\.410 \(undercut of the"
+    with pytest.raises(ConfigError, match=rf"{refused} .* lower gear's limit$"):
+        check_lower_gear(section)
+    check_lower_gear(parse(ToothPair, public_section("P1")))
