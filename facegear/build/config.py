@@ -29,7 +29,7 @@ from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.rolling import check_preloads
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
-from facegear.build.tooth_pair import ToothPair, materials, pair_design
+from facegear.build.tooth_pair import ToothPair, check_lower_gear, materials, pair_design
 from facegear.contact.resolution import (
     along_the_ellipse,
     check_fillet,
@@ -314,6 +314,8 @@ class Config(Section):
                 )
             return
         check_preloads(machine)
+        if "lower" in machine.face_gears:
+            check_lower_gear(pair)
         self._check_duty_speeds()
         self._check_sharing_map(machine)
         check_positions(pair, machine)

@@ -11,9 +11,9 @@ from facegear.build.flanks import Teeth, check_flanks, common_flanks, difference
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.contact.options import ContactPlan
 from facegear.contact.resolution import along_the_ellipse, estimated_memory
-from facegear.errors import ConfigError, NotConverged
+from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.quantities import BODIES, Body
-from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.base import Section, config_error, refuse, require_all
 from facegear.schema.contact import Contact, Mesh
 from facegear.schema.flanks import FlanksSection, Side, read_files
 from facegear.schema.gear_body import MaterialSection
@@ -38,6 +38,7 @@ from facegear.teeth.design import (
 )
 from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import nominal_teeth, pair_at
 from facegear.teeth.surfaces import flank_face
 from facegear.teeth.validate import check
 
@@ -313,6 +314,37 @@ def pair(section: ToothPair) -> Pair:
         For a section without bodies.
     """
     return Pair(pair_design(section), materials(section))
+
+
+def check_lower_gear(section: ToothPair) -> None:
+    """Refuse a pair that no lower gear can have, where offset or shaft angle make it another gear.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of a config with a lower gear.
+
+    Raises
+    ------
+    ConfigError
+        For the first value that the lower gear cannot have.
+    """
+    if section.pinion is None:
+        return
+    upper = _nominal(section)
+    lower = pair_at(upper, "lower", "drive")
+    if nominal_teeth(lower) == nominal_teeth(upper):
+        return
+    try:
+        check(lower)
+    except GeometryError as error:
+        requirement = config_error(error).requirement
+        raise ConfigError(
+            f"tooth_pair.{error.quantity}", error.value, f"{requirement}; this is the lower gear's limit"
+        ) from None
+    except NotConverged as error:
+        requirement = f"other teeth or radii for the lower gear: {error}"
+        raise ConfigError("tooth_pair.face_gear_teeth", section.face_gear_teeth, requirement) from None
 
 
 def _material(section: MaterialSection) -> Material:

@@ -9,8 +9,9 @@ from public_teeth import NAMES, public_design, public_numbers
 import facegear
 from facegear.build.checks import geometric_backlash
 from facegear.build.load import config_of
-from facegear.build.tooth_pair import ToothPair, pair_design
+from facegear.build.tooth_pair import ToothPair, check_lower_gear, pair_design
 from facegear.checking import check_config
+from facegear.errors import ConfigError
 from facegear.pipeline.stages.teeth import geometry
 from facegear.schema.base import parse
 
@@ -102,3 +103,12 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config():
     values["tolerances"]["causes"] = [{**cause, "moves": {"tooth_pair.assembly.pinion_axial_um": 1}}]
     config = config_of(values)
     assert config.tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
+
+
+def test_radii_below_undercut_of_a_lower_gear_that_is_another_one_are_refused_by_key():
+    """Contact of the lower gear ended in Newton steps of its flank, long after the check of the config."""
+    section = parse(ToothPair, public_section("P4"))
+    refused = r"tooth_pair\.face_gear\.inner_radius_mm = 231\.0: must be between 242\.410 \(undercut of the"
+    with pytest.raises(ConfigError, match=rf"{refused} .* lower gear's limit$"):
+        check_lower_gear(section)
+    check_lower_gear(parse(ToothPair, public_section("P1")))
