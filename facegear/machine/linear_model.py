@@ -268,54 +268,6 @@ class LinearModel:
         return np.flatnonzero(np.array(owners) == name)
 
 
-MASSLESS = 1e-14
-"""Eigenvalue of a mass matrix, rows scaled to a unit diagonal, up to which a motion counts as one without
-mass.
-"""
-
-
-def massive_motions(linear: LinearModel) -> Array | None:
-    """Return motions of the coordinates with mass, which those without mass follow statically.
-
-    A casing without mass has such coordinates. No flank may touch them but through coordinates with mass.
-
-    Parameters
-    ----------
-    linear : LinearModel
-        Linear model with n coordinates.
-
-    Returns
-    -------
-    (n, k) array or None
-        Motions of all coordinates by k independent ones with mass, first the coordinates that no mass joins
-        with others, in their order; None where every motion has mass.
-    """
-    diagonal, mass = np.diagonal(linear.mass), linear.mass
-    is_alone = (diagonal > 0.0) & (np.count_nonzero(mass, axis=1) == 1)
-    with_partners = np.flatnonzero(~is_alone)
-    if not with_partners.size:
-        return None
-    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)[
-        with_partners
-    ]
-    values, vectors = np.linalg.eigh(mass[np.ix_(with_partners, with_partners)] * np.outer(scale, scale))
-    is_massless = values <= MASSLESS
-    if not is_massless.any():
-        return None
-    # Coordinates with zero mass have no scale; the others are independent of them.
-    vectors *= np.where(scale > 0.0, scale, 1.0 / linear.lengths[with_partners])[:, None]
-    massless = np.zeros((linear.size, int(is_massless.sum())))
-    massive = np.zeros((linear.size, linear.size - massless.shape[1]))
-    alone_count = int(is_alone.sum())
-    massive[is_alone, :alone_count] = np.eye(alone_count)
-    massless[with_partners], massive[with_partners, alone_count:] = (
-        vectors[:, is_massless],
-        vectors[:, ~is_massless],
-    )
-    stiffness = massless.T @ linear.stiffness
-    return np.asarray(massive - massless @ np.linalg.solve(stiffness @ massless, stiffness @ massive))
-
-
 class Bodies(Protocol):
     """Function that extends a linear model: by coordinates of bending gears, or by other directions of
     forces.

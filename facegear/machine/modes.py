@@ -17,7 +17,7 @@ from facegear.arrays import AnyArray, Array
 from facegear.errors import NotConverged
 from facegear.machine.casing_coordinates import CASING, CASING_MODE
 from facegear.machine.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
-from facegear.machine.linear_model import LinearModel, massive_motions
+from facegear.machine.linear_model import LinearModel
 
 EQUAL = 1e-8
 """Difference of neighbouring frequencies, over the largest of all, up to which they count as equal."""
@@ -82,7 +82,7 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
     stiffness = linear.stiffness + meshes
     if linear.spin is not None and speed != 0.0:
         return _turning(linear, stiffness, speed)
-    if (motions := massive_motions(linear)) is not None:
+    if (motions := _massive_motions(linear)) is not None:
         mass = motions.T @ linear.mass @ motions
         omega_squared, shapes = scipy.linalg.eigh(motions.T @ stiffness @ motions, mass)
         shapes = motions @ shapes
@@ -94,6 +94,45 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
         shapes = vectors / root[:, None]
     frequencies = np.sqrt(_stable(omega_squared, speed)) / (2.0 * np.pi)
     return Modes(frequencies, shapes, _equal_runs(frequencies))
+
+
+MASSLESS = 1e-14
+"""Eigenvalue of a mass matrix, rows scaled to a unit diagonal, up to which a motion counts as one without
+mass.
+"""
+
+
+def _massive_motions(linear: LinearModel) -> Array | None:
+    """Return motions (n, k) of all n coordinates by k independent ones with mass, which those without mass
+    follow statically: first the coordinates that no mass joins with others, in their order; None where every
+    motion has mass.
+
+    A casing without mass has such coordinates. No flank may touch them but through coordinates with mass.
+    """
+    diagonal, mass = np.diagonal(linear.mass), linear.mass
+    is_alone = (diagonal > 0.0) & (np.count_nonzero(mass, axis=1) == 1)
+    with_partners = np.flatnonzero(~is_alone)
+    if not with_partners.size:
+        return None
+    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)[
+        with_partners
+    ]
+    values, vectors = np.linalg.eigh(mass[np.ix_(with_partners, with_partners)] * np.outer(scale, scale))
+    is_massless = values <= MASSLESS
+    if not is_massless.any():
+        return None
+    # Coordinates with zero mass have no scale; the others are independent of them.
+    vectors *= np.where(scale > 0.0, scale, 1.0 / linear.lengths[with_partners])[:, None]
+    massless = np.zeros((linear.size, int(is_massless.sum())))
+    massive = np.zeros((linear.size, linear.size - massless.shape[1]))
+    alone_count = int(is_alone.sum())
+    massive[is_alone, :alone_count] = np.eye(alone_count)
+    massless[with_partners], massive[with_partners, alone_count:] = (
+        vectors[:, is_massless],
+        vectors[:, ~is_massless],
+    )
+    stiffness = massless.T @ linear.stiffness
+    return np.asarray(massive - massless @ np.linalg.solve(stiffness @ massless, stiffness @ massive))
 
 
 def _stable(omega_squared: Array, speed: float) -> Array:
