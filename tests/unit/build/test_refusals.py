@@ -128,7 +128,7 @@ def test_keys_below_the_name_of_a_shaft_or_a_mesh_are_listed_too():
     assert meant.startswith("transmission.shafts.input.bearings[0].rolling.clearance_um = 15: unknown key; ")
     assert meant.endswith("did you mean 'clearance_diametral_um'?")
     (listed,) = [line for line in messages if "zzz" in line]
-    assert "allowed here: clearance_diametral_um, contact_angle_deg" in listed
+    assert "allowed here: cage, centrifugal, clearance_diametral_um" in listed
     (listed,) = [line for line in messages if "a/lower" in line]
     assert "backlash_um" in listed
 
