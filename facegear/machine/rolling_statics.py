@@ -25,7 +25,7 @@ ROUNDINGS = 8.0
 STEPS, STEPS_WITHOUT_GAIN = 120, 8
 """Newton steps after which a search is given up, and after which it ends near balance where none of them came
 closer: rounding decides there, and the account of all forces afterwards."""
-STARTS, STALLED = 3, 1e-12
+STARTS, STALL_LIMIT = 3, 1e-12
 """Searches at most, and force out of balance over the largest one, dimensionless, that asks for another."""
 NEARLY = 1e-9
 """Force out of balance over the largest force, dimensionless, from which on rounding may decide."""
@@ -287,7 +287,7 @@ def _find_together(problem: RollingProblem, coordinates: Array, inner: Sequence[
     states = evaluate(problem, active, coordinates, inner)
     for _ in range(STARTS):
         _descend(problem, states, active)
-        active = np.flatnonzero(imbalance(problem, states) > STALLED * states.size + states.rounding)
+        active = np.flatnonzero(imbalance(problem, states) > STALL_LIMIT * states.size + states.rounding)
         if not active.size:
             break
     return states

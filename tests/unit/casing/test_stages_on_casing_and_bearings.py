@@ -125,3 +125,63 @@ def test_a_floating_gear_with_a_late_idler_comes_to_rest(machine):
     mapped = floating_machine(machine, group, "upper")
     late = np.array([[0.0, -8.000633077401508e-05, 9.506373750375751e-06]])
     assert mapped.equilibria(late).residual.max() < 1e-12
+
+
+CASING = {
+    "stiffness": str(EXAMPLE.parent / "casing" / "box.npz"),
+    "units": "mm_t_s",
+    "modes": 4,
+    "damping_ratio": 0.02,
+    "seats": {"tail idler": 101, "right input": 102, "left input": 103, "lower gear": 104, "upper gear": 105},
+    "feet": [{"name": "base", "node": 301, "held": True}],
+}
+OILED = {"ra_um": 0.3}
+TOOTHED = {
+    "transmission.casing": CASING,
+    "transmission.shafts": {"input": SHAFT},
+    "transmission.mesh_kinematics": "geometric",
+    "transmission.face_gear.mesh_radius_mm": None,
+    "transmission.damping.open_flanks": "contact_only",
+    "transmission.torque.per_input_n_m": 700,
+    "dynamics.speed_rpm": 6000,
+    "dynamics.sweep": {"from_rpm": 5900, "to_rpm": 6100, "points": 2, "chunks": 1, "directions": ["up"]},
+    "strength.load_factors": "machine",
+    "strength.duty": [{"torque_n_m": 320, "speed_rpm": 6000, "hours": 100}],
+    "lubrication": {
+        "oil": "polyol_ester_5_cst",
+        "supply_temperature_c": 100,
+        "pinion": OILED,
+        "face_gear": OILED,
+        "bulk": {"source": "cooling", "pinion_w_per_k": 60, "face_gear_w_per_k": 200},
+    },
+}
+"""The example with its teeth, on the casing: the seats of three pinions and of both gears."""
+
+
+@pytest.fixture(scope="module")
+def toothed():
+    return facegear.example().with_values(TOOTHED)
+
+
+@pytest.fixture(scope="module")
+def posed(toothed):
+    return toothed.with_values({"transmission.operating_pose": "static", "lubrication": None})
+
+
+@pytest.mark.parametrize(
+    "name", ["rating", "dynamic_stress", "stress_over_speed", "losses", "bearing_life", "modes"]
+)
+def test_a_stage_on_teeth_answers(toothed, name):
+    assert getattr(toothed, name)().summary
+
+
+@pytest.mark.parametrize("name", ["operating_pose", "rating", "modes", "response"])
+def test_a_stage_on_teeth_where_forces_put_them_answers(posed, name):
+    assert getattr(posed, name)().summary
+
+
+def test_feet_balance_the_torques_of_teeth(toothed):
+    """Where forces put the teeth, moments of contacts that move along the face are left out of pinions."""
+    feet = toothed.casing_loads().content["feet"].set_index("foot")
+    assert np.abs(feet.loc["out of balance"].to_numpy(float)).max() < 1e-5
+    assert np.abs(feet.loc["applied"].to_numpy(float)).max() > 100.0
