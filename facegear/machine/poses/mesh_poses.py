@@ -223,6 +223,19 @@ def _axes(layout: Layout, gear: int) -> RelativeMotion:
     return RelativeMotion(layout.pinion_teeth / layout.gear_teeth)
 
 
+def _parts(axes: RelativeMotion, middle: float) -> tuple[Array, Array]:
+    """Return the derivatives (4, 3) of PARTS by shifts and turns of the pinion about the middle of its face,
+    in the mesh frame.
+    """
+    sine, cosine, up = axes.sine, axes.cosine, axes.basis[2]
+    by_shift, by_turn = np.zeros((2, len(PARTS), 3))
+    by_shift[0, 0], by_shift[1, 2], by_shift[3, 1] = 1.0, 1.0, 1.0 / sine
+    by_turn[0], by_turn[2, 0], by_turn[3] = middle * up, 1.0, -axes.offset / sine**2 * up
+    by_shift[1] += cosine * by_shift[3]
+    by_turn[1] = cosine * by_turn[3]
+    return by_shift, by_turn
+
+
 @dataclass(frozen=True, eq=False)
 class _GearParts:
     """Derivatives of PARTS at one gear, m/m, m/rad and rad/rad.
@@ -241,12 +254,7 @@ class _GearParts:
     def of_gear(cls, layout: Layout, gear: int, middle: float) -> "_GearParts":
         """Return the derivatives at a gear; middle: place of the middle of the pinion's face, m."""
         axes, to_mesh = _axes(layout, gear), to_mesh_frame(layout.gears[gear].sign)
-        sine, cosine, up = axes.sine, axes.cosine, axes.basis[2]
-        by_shift, by_turn = np.zeros((2, len(PARTS), 3))
-        by_shift[0, 0], by_shift[1, 2], by_shift[3, 1] = 1.0, 1.0, 1.0 / sine
-        by_turn[0], by_turn[2, 0], by_turn[3] = middle * up, 1.0, -axes.offset / sine**2 * up
-        by_shift[1] += cosine * by_shift[3]
-        by_turn[1] = cosine * by_turn[3]
+        by_shift, by_turn = _parts(axes, middle)
         x, y, z = middle_place(middle, axes) + [0.0, 0.0, layout.tilt_distance(gear)]
         # a turn of the gear moves the middle of the pinion's face by the turn times the arm (x, y, z)
         at_middle = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
