@@ -348,7 +348,7 @@ def gear_flanks(
     for key, pair in zip(keys, nominal_pairs(design, gears), strict=True):
         if key not in flanks:
             tooth = BUILDERS[body](pair, sizes)
-            images = [flanks[other] for other in teeth if is_mirrored_across(tooth, teeth[other])]
+            images = [flanks[known_key] for known_key in teeth if is_mirrored_across(tooth, teeth[known_key])]
             teeth[key] = tooth
             flanks[key] = _flank_of(pair, tooth, sizes, material, plan, True, next(iter(images), None))
     return [flanks[key] for key in keys]

@@ -154,7 +154,7 @@ def _mirror_nodes(tooth: FeTooth) -> Integers:
     return np.arange(len(tooth.nodes)).reshape(planes, -1)[::-1].ravel()
 
 
-def is_mirrored_across(tooth: FeTooth, other: FeTooth) -> bool:
+def is_mirrored_across(tooth: FeTooth, second_tooth: FeTooth) -> bool:
     """Tell whether a tooth is another one in a mirror across the middle of the face.
 
     A pinion without modifications is its own image if its teeth are spur ones; if they are helical, its image
@@ -162,7 +162,7 @@ def is_mirrored_across(tooth: FeTooth, other: FeTooth) -> bool:
 
     Parameters
     ----------
-    tooth, other : FeTooth
+    tooth, second_tooth : FeTooth
         Meshes of two teeth of the same body.
 
     Returns
@@ -170,10 +170,10 @@ def is_mirrored_across(tooth: FeTooth, other: FeTooth) -> bool:
     bool
         True where all nodes are images of each other to rounding.
     """
-    if tooth.nodes.shape != other.nodes.shape or tooth.hexes.shape != other.hexes.shape:
+    if tooth.nodes.shape != second_tooth.nodes.shape or tooth.hexes.shape != second_tooth.hexes.shape:
         return False
-    image = other.nodes * np.array([1.0, -1.0, 1.0])
-    image[:, 1] += other.nodes[:, 1].min() + other.nodes[:, 1].max()
+    image = second_tooth.nodes * np.array([1.0, -1.0, 1.0])
+    image[:, 1] += second_tooth.nodes[:, 1].min() + second_tooth.nodes[:, 1].max()
     apart = np.abs(tooth.nodes[_mirror_nodes(tooth)] - image).max()
     return bool(apart <= ROUNDING * np.abs(image).max())
 

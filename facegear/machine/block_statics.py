@@ -272,8 +272,9 @@ def _select_unknowns(layout: Layout, every_length: Array, rows: Array) -> tuple[
             coordinates += [at, at + 1]
             lengths += 2 * [every_length[at] if rocks else np.inf]
     axial = DOF_PER_BODY * np.arange(pinions) + 2
-    more = np.append(axial[rows[:, axial].any(axis=0)], np.arange(layout.dof, every_length.size))
-    return np.append(coordinates, more), 1.0 / np.append(lengths, every_length[more])
+    behind_gears = np.append(axial[rows[:, axial].any(axis=0)], np.arange(layout.dof, every_length.size))
+    lengths += every_length[behind_gears].tolist()
+    return np.append(coordinates, behind_gears), 1.0 / np.array(lengths)
 
 
 def _windows(layout: Layout, size: int, by_gear: bool) -> tuple[Integers, Integers]:

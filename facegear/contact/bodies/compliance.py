@@ -86,12 +86,12 @@ class FlankCompliance:
             Compliance of the image, m/N.
         """
         lattice, coarse, blocks = self.shape, self.coarse_shape, len(self.neighbour_blocks)
-        loaded = self.loaded_tooth.reshape(*lattice, *lattice)[:, ::-1, :, ::-1]
+        tooth = self.loaded_tooth.reshape(*lattice, *lattice)[:, ::-1, :, ::-1]
         neighbours = self.neighbour_blocks.reshape(blocks, *coarse, *coarse)[:, :, ::-1, :, ::-1]
         readings = self.readings.reshape(len(self.readings), *gauges, *coarse)[:, :, :, ::-1, :, ::-1]
         return replace(
             self,
-            loaded_tooth=loaded.reshape(self.loaded_tooth.shape),
+            loaded_tooth=tooth.reshape(self.loaded_tooth.shape),
             neighbour_blocks=neighbours.reshape(self.neighbour_blocks.shape),
             readings=readings.reshape(self.readings.shape),
         )
