@@ -163,8 +163,8 @@ def keep_slow_motions(model: LinearModel, limit: float) -> LinearModel:
         parts = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
         spin = Spin(*(motions.T @ part @ motions for part in parts))
     loads, tangent_loads = model.loads[first:], model.tangent_loads
-    rest = np.linalg.solve(stiffness, loads)
-    rest -= slow @ np.linalg.solve(slow.T @ stiffness @ slow, slow.T @ loads)
+    static_motion = slow @ np.linalg.solve(slow.T @ stiffness @ slow, slow.T @ loads)
+    rest = np.asarray(np.linalg.solve(stiffness, loads) - static_motion)
     if tangent_loads is not None:
         tangent_loads = tangent_loads[:first] - model.stiffness[:first, first:] @ rest
     labels = [f"{CASING}:motion {number}" for number in range(1, slow.shape[1] + 1)]

@@ -246,7 +246,7 @@ class LinearModel:
             out.
         """
         if self.condensed_casing is None:
-            return self.stiffness[coordinates], self.dampers[coordinates]
+            return self.stiffness[:, coordinates].T, self.dampers[coordinates]
         stiffness, dampers = self.condensed_casing.stiffness, self.condensed_casing.dampers
         return self.over_all(stiffness[coordinates]), self.over_all(dampers[coordinates])
 
