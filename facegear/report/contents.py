@@ -38,7 +38,8 @@ CAPTIONS = {
     "which ends at the mean force of its last level; "
     "beside a row: the fraction of the time past it.",
     "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
-    "mode_shapes": "Shapes of typical modes, of at most twelve kinds from low frequencies on.",
+    "mode_shapes": "Shapes of typical modes, of at most twelve kinds from low frequencies on; one bar stands "
+    "for a casing.",
     "body_shapes": "Section of the face gear and its first mode shapes at a crest, exaggerated, hub held; "
     "grey: at rest, the brighter the larger the motion, that round the axis included.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "

@@ -220,6 +220,8 @@ def _kilo(newtons: float) -> str:
 
 PLAIN_MOTIONS = ("x", "y", "z", "θ")
 """Motions of a body that neither tilts nor bends, in the order of the bars."""
+MOST_BARS = 12
+"""Motions of a body that have a bar each; of more, as those of a casing, the largest stands for all."""
 MOST_SHAPES = 12
 """Kinds of modes that are drawn at most, a free choice: a casing has as many kinds as modes, whose 60 panels
 nobody reads."""
@@ -298,8 +300,8 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
     # Tilts and elastic motions stand behind those of all bodies in the table.
     codes, bodies = pd.factorize(dofs["body"])
-    order = np.argsort(codes, kind="stable")
-    counts = np.bincount(codes)
+    groups = [np.flatnonzero(codes == code) for code in range(len(bodies))]
+    counts = np.array([len(group) if len(group) <= MOST_BARS else 1 for group in groups])
     edges = np.concatenate([[0], np.cumsum(counts)])
     middles = 0.5 * (edges[:-1] + edges[1:] - 1.0)
     names = [(float(middle), str(body)) for middle, body in zip(middles, bodies, strict=True)]
@@ -308,15 +310,23 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
     panels = []
     for orders in typical_modes(frequencies):
         mode = by_order.loc[orders[0]]
-        heights = amplitudes(shapes, orders)[order]
+        every = amplitudes(shapes, orders)
+        heights = np.concatenate([_bars(every[group]) for group in groups])
         marks: list[Bars | Line] = [
             *(Line(float(edge) - 0.5, colour=grey(0.8), width=0.6) for edge in edges[1:-1]),
             Line(0.0, "y", colour=BLACK, width=0.6),
-            Bars(np.arange(len(dofs), dtype=float), heights, colour=CLASS_COLOURS[mode["class"]]),
+            Bars(np.arange(edges[-1], dtype=float), heights, colour=CLASS_COLOURS[mode["class"]]),
         ]
         up = Axis("", "", low=-1.1 if len(orders) == 1 else 0.0, high=1.1)
         panels.append(Panel(across, up, marks, title=_title(orders, mode), height=0.85))
     return Figure(panels, y_label="Amplitude relative to the largest")
+
+
+def _bars(amplitudes_of_body: Array) -> Array:
+    """Return the heights of a body's bars (bars,): its amplitudes, or the largest of more than MOST_BARS."""
+    if len(amplitudes_of_body) <= MOST_BARS:
+        return amplitudes_of_body
+    return amplitudes_of_body[[int(np.abs(amplitudes_of_body).argmax())]]
 
 
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:

@@ -77,6 +77,16 @@ def test_tilts_are_drawn_beside_the_other_motions_of_their_body():
     assert "further motions" in panel.x.name
 
 
+def test_one_bar_stands_for_the_many_motions_of_a_casing():
+    """Sixty bars of a casing left no room for the names of the bodies on a phone."""
+    rows = [(1, "pinion", "x", 0.5), *((1, "casing", f"mode {i}", -0.05 * i) for i in range(1, 21))]
+    shapes = pd.DataFrame(rows, columns=["order", "body", "dof", "amplitude_m_or_rad"])
+    columns = {"order": [1], "frequency_hz": [9.0], "symbols": ["T"], "multiplicity": [1]}
+    (panel,) = mode_shapes(pd.DataFrame(columns).assign(**{"class": "casing"}), shapes).panels
+    (bars,) = (mark for mark in panel.marks if isinstance(mark, Bars))
+    assert np.allclose(bars.lengths, [-0.5, 1.0]) and panel.x.ticks == [(0.0, "pinion"), (1.0, "casing")]
+
+
 def test_only_the_lowest_kinds_of_many_modes_are_drawn():
     """A machine on a casing got 60 panels, 6000 pixels of a page."""
     frequencies = pd.DataFrame(
