@@ -9,9 +9,10 @@ from public_teeth import NAMES, public_design, public_numbers
 import facegear
 from facegear.build.checks import geometric_backlash
 from facegear.build.load import config_of
-from facegear.build.tooth_pair import ToothPair, check_lower_gear, pair_design
+from facegear.build.lower_gear import check_lower_gear
+from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, FacegearError
 from facegear.pipeline.stages.teeth import geometry
 from facegear.schema.base import parse
 
@@ -112,3 +113,57 @@ def test_radii_below_undercut_of_a_lower_gear_that_is_another_one_are_refused_by
     with pytest.raises(ConfigError, match=rf"{refused} .* lower gear's limit$"):
         check_lower_gear(section)
     check_lower_gear(parse(ToothPair, public_section("P1")))
+
+
+SPRINGS = dict.fromkeys("xyz", 2e8)
+BODY = {"mass_kg": 1, "inertia_kg_m2": 0.002, "bearing_stiffness_n_per_m": SPRINGS}
+ONE_GEAR = {
+    "mesh_stiffness": {"torque_n_m": 400},
+    "transmission": {
+        "pinions": [{"name": "engine", "role": "input", "angle_deg": 0}],
+        "face_gears": ["lower"],
+        "pinion": BODY,
+        "face_gear": BODY,
+        "damping": {"mesh_n_s_per_m": 1500, "mass_per_s": 50, "bearing_s": 2e-6},
+        "transmission_error": "from_contact",
+        "torque": {"per_input_n_m": 500, "tail_share": 0},
+    },
+    "dynamics": {"speed_rpm": 6000, "sweep": {"from_rpm": 500, "to_rpm": 9000, "points": 4}},
+}
+"""A machine of a lower gear alone, with stiffness from contact."""
+
+
+@pytest.mark.parametrize(
+    ("changes", "turned_over"),
+    [
+        ({"offset_mm": 2.0}, "tooth_pair.offset_mm = -2 and"),
+        ({"shaft_angle_deg": 91.0}, "tooth_pair.shaft_angle_deg = 89 and"),
+        ({"assembly": {"offset_um": 60}}, "tooth_pair.assembly.offset_um = -60 and"),
+        ({"assembly": {"shaft_angle_error_deg": 0.01}}, "shaft_angle_error_deg = -0.01 and"),
+    ],
+)
+def test_a_lower_gear_alone_that_differs_from_an_upper_one_is_refused(changes, turned_over):
+    """Contact took the upper gear, the rows of the machine the lower one, in silence."""
+    with pytest.raises(FacegearError) as refused:
+        config_of({**make_config("P2", **changes), **ONE_GEAR})
+    message = str(refused.value)
+    assert 'transmission.face_gears = ["lower"]: must be [upper]' in message and turned_over in message
+
+
+def test_a_lower_gear_alone_on_axes_that_samples_move_is_refused():
+    cause = {"name": "axes", "spread": 5, "moves": {"tooth_pair.assembly.offset_um": 1}, "source": "drawing"}
+    values = {**make_config("P2"), **ONE_GEAR, "tolerances": {"samples": 256, "causes": [cause]}}
+    with pytest.raises(
+        FacegearError, match=r"\[upper\] where samples or designs change tooth_pair\.assembly"
+    ):
+        config_of(values)
+
+
+def test_a_lower_gear_alone_at_right_angles_or_without_bodies_of_teeth_is_a_machine():
+    config_of({**make_config("P1"), **ONE_GEAR})
+    bare = dict.fromkeys(("pinion", "face_gear", "shaper"))
+    table = [{"order": 1, "sin_n_per_m": 0.0, "cos_n_per_m": 1e7}]
+    given = {"mesh_stiffness": {"source": "harmonics", "mean_n_per_m": 4e8, "table": table}}
+    section = {**public_section("P2"), **bare, "offset_mm": 2.0}
+    machine = ONE_GEAR["transmission"] | {"backlash_um": 100, "transmission_error": {"amplitude_um": 0}}
+    config_of({"case": "kind", **ONE_GEAR, **given, "transmission": machine, "tooth_pair": section})
