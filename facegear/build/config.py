@@ -150,8 +150,8 @@ class Config(Section):
         """Keys that samples or designs change."""
         causes = self.tolerances.causes if self.tolerances is not None else ()
         variables = self.search.variables if self.search is not None else ()
-        moved = [key for cause in causes for key in cause.moves]
-        return [*moved, *(key for variable in variables for key in variable.sets)]
+        keys = [key for cause in causes for key in cause.moves]
+        return [*keys, *(key for variable in variables for key in variable.sets)]
 
     def _check_poses(self) -> None:
         """Refuse contact in the loaded position where the stiffness, the flanks, samples or designs do

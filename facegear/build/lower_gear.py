@@ -1,4 +1,4 @@
-"""What a lower face gear asks of the tooth pair, which the config describes as that of an upper one."""
+"""Checks of the tooth pair, which the config describes as that of an upper face gear, for a lower one."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ ALONE = "geometry and contact of a gear alone are those of an upper one"
 """Reason of a refusal: the machine has the forces and poses of the lower gear."""
 
 
-def check_gear_alone(section: ToothPair, gears: Sequence[str], moved: Sequence[str]) -> None:
+def check_gear_alone(section: ToothPair, gears: Sequence[str], moved_keys: Sequence[str]) -> None:
     """Refuse a lower gear alone whose axes an upper one would not have.
 
     Teeth without bodies have no contact that could be of the wrong gear, and may stand on any axes.
@@ -33,7 +33,7 @@ def check_gear_alone(section: ToothPair, gears: Sequence[str], moved: Sequence[s
         Section `tooth_pair` of the config.
     gears : Sequence[str]
         Face gears of the machine, of `upper` and `lower`.
-    moved : Sequence[str]
+    moved_keys : Sequence[str]
         Keys of the config that samples or designs change.
 
     Raises
@@ -52,15 +52,15 @@ def check_gear_alone(section: ToothPair, gears: Sequence[str], moved: Sequence[s
         errors.shaft_angle_error_deg,
     )
     turned_over = [
-        f"{PAIR}{key} = {both - value:.12g}"
-        for (key, both), value in zip(SUMS.items(), values, strict=True)
-        if value != both - value
+        f"{PAIR}{key} = {pair_sum - value:.12g}"
+        for (key, pair_sum), value in zip(SUMS.items(), values, strict=True)
+        if value != pair_sum - value
     ]
     if turned_over:
-        same = f"turned over, this gear is an upper one with {', '.join(turned_over)}"
-        requirement = f"[upper] on such axes, as {ALONE}; {same} and angles, x and y of the other sign"
+        upper_gear = f"turned over, this gear is an upper one with {', '.join(turned_over)}"
+        requirement = f"[upper] on such axes, as {ALONE}; {upper_gear} and angles, x and y of the other sign"
         raise ConfigError("transmission.face_gears", list(gears), requirement)
-    for key in moved:
+    for key in moved_keys:
         if key.removeprefix(PAIR) in SUMS:
             requirement = f"[upper] where samples or designs change {key}, as {ALONE}"
             raise ConfigError("transmission.face_gears", list(gears), requirement)

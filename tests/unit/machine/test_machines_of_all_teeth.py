@@ -99,7 +99,7 @@ def gear_alone(gear, sign, **pair):
 
 
 def test_a_lower_gear_alone_is_the_upper_one_of_the_opposite_offset_turned_over():
-    """What a refusal of such a gear with bodies of teeth tells the user to write instead."""
+    """A refusal of such a gear with bodies of teeth tells the user to write the upper one."""
     lower = gear_alone("lower", 1.0, offset_mm=15.0, shaft_angle_deg=97.0)
     upper = gear_alone("upper", -1.0, offset_mm=-15.0, shaft_angle_deg=83.0)
     for result, column in (("statics", "force_n"), ("modes", "frequency_hz"), ("response", "value")):
