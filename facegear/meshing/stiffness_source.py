@@ -12,8 +12,9 @@ from facegear.harmonics import LEVELS, Fit, Harmonics, fit_harmonics
 from facegear.meshing.stiffness_curve import LoadTable, load_table, peak_to_peak, unloaded_series
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.number_format import format_number
-from facegear.teeth.placement import GEARS
 
+GEARS = ("lower", "upper")
+"""Face gears of which a harmonics table may have the flanks."""
 FlankSeries = dict[str, tuple[Harmonics, Harmonics]]
 """Stiffness series of drive and back flank by gear, N/m."""
 HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
