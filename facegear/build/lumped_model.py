@@ -205,7 +205,7 @@ def machine(
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
     casing: Arrays | None = None,
-    flank_stiffness: tuple[tuple[Harmonics, Harmonics], ...] | None = None,
+    flank_stiffness: Mapping[str, tuple[Harmonics, Harmonics]] | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -229,8 +229,8 @@ def machine(
         that is stiffness times compression.
     casing : mapping of arrays or None
         Arrays of stage casing; None to reduce the casing of the section here, where it has one.
-    flank_stiffness : tuple of pairs of Harmonics, or None
-        Stiffness of drive and back flank at each gear, N/m; None where all are `stiffness`.
+    flank_stiffness : mapping of str to pair of Harmonics, or None
+        Stiffness of drive and back flank by gear, N/m; None where all are `stiffness`.
 
     Returns
     -------
@@ -261,7 +261,7 @@ def machine(
         casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
-        flank_stiffness=flank_stiffness,
+        flank_stiffness=flank_stiffness and tuple(flank_stiffness[gear] for gear in shape.contact_gears),
         has_phase_shifts=section.mesh_place == "moving",
     )
 

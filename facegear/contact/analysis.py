@@ -164,13 +164,18 @@ class ContactAnalysis:
     results: list[tuple[list[LoadedPosition], FlankPressure]]
     numbers: Integers
 
+    @property
+    def is_spur(self) -> bool:
+        """Whether the teeth are spur ones, whose tables and arrays leave wrenches and further flanks out."""
+        return self.models[0].design.is_spur
+
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
         """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position; for
         teeth other than spur ones WRENCH_QUANTITIES follow.
         """
         tables = [ltca_table(*result) for result in self.results]
-        if self.models[0].design.is_spur:
+        if self.is_spur:
             return tables
         on = ["torque_n_m", "position"]
         return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
@@ -188,7 +193,7 @@ class ContactAnalysis:
         """Arrays of the pressure file: PRESSURE_ARRAYS of the upper gear's drive flank, with those of the
         other pairs for teeth other than spur ones, see `pattern.pressure_of_flanks`.
         """
-        if self.models[0].design.is_spur:
+        if self.is_spur:
             return self.pressure[0]
         arrays = {**self.pressure[0], "flank_variant": self.numbers}
         for number, (pressure, table) in enumerate(zip(self.pressure[1:], self.ltca[1:], strict=True), 1):
@@ -219,7 +224,7 @@ class ContactAnalysis:
         other than spur ones.
         """
         designs = [model.design for model in self.models]
-        if designs[0].is_spur:
+        if self.is_spur:
             return by_flank(self.by_torque, designs, self.numbers)
         tables = zip(self.by_torque, self.ltca, strict=True)
         return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)

@@ -416,10 +416,8 @@ def posed_contacts(
                 float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row])
             )
         rest = ContactPose(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
-        flank_surface, end = (
-            surface.of_flank(gear_of(name, gears), other_flank),
-            contact_poses[name, other_flank],
-        )
+        flank_surface = surface.of_flank(gear_of(name, gears), other_flank)
+        end = contact_poses[name, other_flank]
         factors = {stress: stress_ratio(flank_surface, stress, rest, end) for stress in STRESSES}
         at_rest = contacts_of(name, assembled_contacts, gears)[other_flank]
         contacts[name] = {

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame
+from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame, to_pinion
 from facegear.teeth.conjugate import PairNumbers, exact_contact, pitch_roll
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.family_contact import contact_line
@@ -342,9 +342,8 @@ def _turns(
     gears' z.
     """
     axes, to_mesh = design.family.motion, to_mesh_frame(mesh.sign)
-    cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
     of_pinion = axes.basis.T @ to_mesh
-    of_gear = to_mesh @ np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
+    of_gear = to_mesh @ to_pinion(mesh.azimuth)
     pinion_turn = np.array(pinion.turn) * [1.0, 1.0, -1.0]
     gear_turn = np.array(gear.turn) * [1.0, 1.0, mesh.sign]
     middle, centre = middle_place(design.middle, axes), np.array([0.0, 0.0, -mesh.tilt_height])

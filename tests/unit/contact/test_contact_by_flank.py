@@ -37,7 +37,7 @@ def with_errors(**errors):
 def contact_of(bodies, tooth_pair, every_flank=True):
     teeth, plan = pair(ToothPair.of_config(tooth_pair)), contact_plan(parse(Contact, CONTACT))
     found = analysis.contact_analysis(teeth.design, teeth.materials, [tuple(bodies)], plan, every_flank)
-    return contents(found, teeth.design)
+    return contents(found)
 
 
 @pytest.fixture(scope="module")
@@ -113,10 +113,12 @@ def test_flanks_with_a_stiffness_of_their_own_are_stored_with_their_contact(kind
         ltca=tables,
         by_torque=tables,
         by_flank=tables[0],
-        pressure=[{}],
-        loads={"flank_variant": np.array([[0, 1], [2, 3]])},
+        stored_pressure={},
+        loads={},
+        numbers=np.array([[0, 1], [2, 3]]),
+        is_spur=design.is_spur,
     )
-    table = contents(found, design)["ltca_by_flank"]
+    table = contents(found)["ltca_by_flank"]
     means = table.groupby(["gear", "flank"])["k_average_n_per_m"].mean().to_dict()
     every = {("upper", "back"): 2e8, ("lower", "drive"): 3e8, ("lower", "back"): 4e8}
     assert means == (every if count else {}) and len(table) == 2 * count
