@@ -30,7 +30,7 @@ from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.rolling import check_preloads
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
-from facegear.build.tooth_pair import ToothPair, materials, pair_design
+from facegear.build.tooth_pair import ToothPair, check_lower_gear, materials, pair_design
 from facegear.contact.resolution import (
     along_the_ellipse,
     check_fillet,
@@ -317,6 +317,7 @@ class Config(Section):
         check_preloads(machine)
         self._check_duty_speeds()
         self._check_sharing_map(machine)
+        check_lower_gear(pair, machine.face_gears)
         check_positions(pair, machine)
         check_machine_strain(pair, machine)
         check_torques(pair, machine)

@@ -1,8 +1,8 @@
 """The tooth pair in SI units with its materials, elements and contact analysis."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
-from math import pi, radians
+from math import degrees, pi, radians
 from typing import Any
 
 from pydantic import Field, model_validator
@@ -11,7 +11,7 @@ from facegear.build.flanks import Teeth, check_flanks, common_flanks, difference
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.contact.options import ContactPlan
 from facegear.contact.resolution import along_the_ellipse, estimated_memory
-from facegear.errors import ConfigError, NotConverged
+from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.quantities import BODIES, Body
 from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.contact import Contact, Mesh
@@ -38,6 +38,7 @@ from facegear.teeth.design import (
 )
 from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import nominal_teeth, pair_at
 from facegear.teeth.surfaces import flank_face
 from facegear.teeth.validate import check
 
@@ -152,6 +153,57 @@ def pair_design(section: ToothPair) -> PairDesign:
         flanks = common_flanks(flanks_section, flank_face(design, body), teeth)
         design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
     return design
+
+
+def other_lower_gear(design: PairDesign) -> PairDesign | None:
+    """Return the pair of the lower gear's drive flank where it has other teeth than the upper gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of the upper gear.
+
+    Returns
+    -------
+    PairDesign or None
+        None where both gears have the same teeth.
+    """
+    lower = pair_at(design, "lower", "drive")
+    return None if nominal_teeth(lower) == nominal_teeth(design) else lower
+
+
+def check_lower_gear(section: ToothPair, face_gears: Collection[str]) -> None:
+    """Require teeth of the lower face gear where an offset or the shaft angle makes it another one.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+    face_gears : collection of str
+        Face gears of the machine, of `upper` and `lower`.
+
+    Raises
+    ------
+    ConfigError
+        If the lower gear cannot exist, with the key that decides.
+    """
+    if "lower" not in face_gears or section.pinion is None:
+        return
+    lower = other_lower_gear(pair_design(section))
+    if lower is None:
+        return
+    place = (
+        f"for the lower gear, which the pinions meet at offset_mm = {1e3 * lower.offset + 0.0:g} and "
+        f"shaft_angle_deg = {degrees(lower.shaft_angle):g}"
+    )
+    try:
+        check(lower)
+    except GeometryError as error:
+        requirement = f"{error.requirement}; {place}"
+        raise ConfigError(f"tooth_pair.{error.quantity}", error.value, requirement) from None
+    except NotConverged as error:
+        requirement = f"other teeth or radii {place}: {error}"
+        raise ConfigError("tooth_pair.face_gear_teeth", section.face_gear_teeth, requirement) from None
 
 
 def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:

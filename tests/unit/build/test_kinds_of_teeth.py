@@ -1,6 +1,7 @@
 """Keys of helical, tapered, offset and asymmetric teeth, and the stages that refuse them before any work."""
 
 from dataclasses import asdict
+from pathlib import Path
 
 import pytest
 from kinds_of_teeth import public_section
@@ -8,16 +9,19 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
+from facegear.build.config import resolved_values
+from facegear.build.early_checks import pair_findings
 from facegear.build.kinds_of_teeth import ALL_KINDS, SPUR_ONLY, refused_keys, refused_moves
-from facegear.build.load import config_of
+from facegear.build.load import config_of, read_layers
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, ConfigErrors
 from facegear.pipeline.needs import require_teeth
 from facegear.pipeline.stages.teeth import geometry
 from facegear.pipeline.table import STAGES
 from facegear.schema.base import parse
 
+ROOT = Path(__file__).parents[3]
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
 
@@ -174,3 +178,40 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config(monkeypatch):
     for name in ("tolerances_chunk", "compliance", "contact"):
         monkeypatch.setitem(SPUR_ONLY, name, ())
     require_teeth("tolerances_chunk", config.model_dump(mode="json"))
+
+
+def make_machine_of_two_gears(teeth: dict) -> dict:
+    """Return the plain values of the shipped helical machine with other teeth and two face gears."""
+    values = read_layers(ROOT / "config" / "helical.yaml") | {"tooth_pair": teeth}
+    values["transmission"] |= {
+        "face_gears": ["lower", "upper"],
+        "pinions": values["transmission"]["pinions"][:1],
+    }
+    return values
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "decides"),
+    [
+        ("P4", "face_gear.inner_radius_mm = 231.0", "undercut of the coast flank"),
+        ("P3", "pinion.middle_mm = 162.0", "to cover half of the gear's face"),
+    ],
+)
+def test_a_lower_gear_that_cannot_exist_is_refused_by_its_key(name, key, decides):
+    """The machine passed, and its run ended in a solver that found no flank at a height."""
+    with pytest.raises(ConfigErrors) as refused:
+        config_of(make_machine_of_two_gears(public_section(name)))
+    (line,) = refused.value.lines
+    assert f"tooth_pair.{key}: must be " in line and decides in line
+    assert "for the lower gear, which the pinions meet at offset_mm = " in line
+
+
+def test_a_check_tells_what_is_wrong_with_the_teeth_of_another_lower_gear():
+    """The upper gear's contact lies on its face, that of the lower gear beside it, which went unsaid."""
+    teeth = public_section("P4") | {"offset_mm": -15}
+    teeth["face_gear"]["inner_radius_mm"] = 243
+    teeth["pinion"]["middle_mm"] = 247
+    findings = pair_findings(resolved_values(config_of(make_machine_of_two_gears(teeth))))
+    assert len(findings.facts) == 2 and findings.facts[0].startswith("geometry: contact ratio 1.673")
+    assert len(findings.remarks) >= 2
+    assert all(line.startswith("lower gear: tooth_pair: ") for line in findings.remarks)
