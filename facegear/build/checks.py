@@ -308,12 +308,13 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    assembly, design = pair.assembly.model_dump(), pair_design(pair)
+    errors = {key: value for key, value in pair.assembly.model_dump().items() if value != 0.0}
+    design = pair_design(pair)
     try:
         backlash = normal_backlash(design, tuple(beside))
     except NotConverged:
         raise ConfigError(
-            "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
+            "tooth_pair.assembly", errors, "smaller errors, with which the flanks meet"
         ) from None
     if backlash < -JAM:
         min_thinning = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash

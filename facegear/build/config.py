@@ -326,8 +326,7 @@ class Config(Section):
             return
         check_preloads(machine)
         check_gear_alone(pair, machine.face_gears, self._moved_keys)
-        if "lower" in machine.face_gears:
-            check_lower_gear(pair)
+        check_lower_gear(pair, machine.face_gears)
         self._check_duty_speeds()
         self._check_sharing_map(machine)
         check_positions(pair, machine)

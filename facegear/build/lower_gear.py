@@ -1,11 +1,13 @@
 """Checks of the tooth pair, which the config describes as that of an upper face gear, for a lower one."""
 
 from collections.abc import Sequence
+from math import degrees
 
 from facegear.build.tooth_pair import ToothPair, nominal_design
 from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.schema.base import config_error
 from facegear.schema.changes import PAIR
+from facegear.teeth.design import PairDesign
 from facegear.teeth.placement import nominal_teeth, pair_at
 from facegear.teeth.validate import check
 
@@ -66,32 +68,52 @@ def check_gear_alone(section: ToothPair, gears: Sequence[str], moved_keys: Seque
             raise ConfigError("transmission.face_gears", list(gears), requirement)
 
 
-def check_lower_gear(section: ToothPair) -> None:
-    """Refuse a pair that no lower gear can have, where offset or shaft angle make it another gear.
+def other_lower_gear(design: PairDesign) -> PairDesign | None:
+    """Return the pair of the lower gear's drive flank where it has other teeth than the upper gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of the upper gear.
+
+    Returns
+    -------
+    PairDesign or None
+        None where both gears have the same teeth.
+    """
+    lower = pair_at(design, "lower", "drive")
+    return None if nominal_teeth(lower) == nominal_teeth(design) else lower
+
+
+def check_lower_gear(section: ToothPair, gears: Sequence[str]) -> None:
+    """Require teeth of the lower face gear where an offset or the shaft angle makes it another one.
 
     Parameters
     ----------
     section : ToothPair
-        Section `tooth_pair` of a config with a lower gear.
+        Section `tooth_pair` of the config.
+    gears : Sequence[str]
+        Face gears of the machine, of `upper` and `lower`.
 
     Raises
     ------
     ConfigError
         For the first value that the lower gear cannot have.
     """
-    if section.pinion is None:
+    if "lower" not in gears or section.pinion is None:
         return
-    upper = nominal_design(section)
-    lower = pair_at(upper, "lower", "drive")
-    if nominal_teeth(lower) == nominal_teeth(upper):
+    lower = other_lower_gear(nominal_design(section))
+    if lower is None:
         return
+    axes = (
+        f"for the lower gear, which the pinions meet at offset_mm = {1e3 * lower.offset + 0.0:g} and "
+        f"shaft_angle_deg = {degrees(lower.shaft_angle):g}"
+    )
     try:
         check(lower)
     except GeometryError as error:
-        requirement = config_error(error).requirement
-        raise ConfigError(
-            f"tooth_pair.{error.quantity}", error.value, f"{requirement}; this is the lower gear's limit"
-        ) from None
+        requirement = f"{config_error(error).requirement}; {axes}"
+        raise ConfigError(f"{PAIR}{error.quantity}", error.value, requirement) from None
     except NotConverged as error:
-        requirement = f"other teeth or radii for the lower gear: {error}"
-        raise ConfigError("tooth_pair.face_gear_teeth", section.face_gear_teeth, requirement) from None
+        requirement = f"other teeth or radii {axes}: {error}"
+        raise ConfigError(f"{PAIR}face_gear_teeth", section.face_gear_teeth, requirement) from None

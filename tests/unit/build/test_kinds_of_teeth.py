@@ -1,6 +1,7 @@
 """Keys of helical, tapered, offset and asymmetric teeth."""
 
 from dataclasses import asdict
+from pathlib import Path
 
 import pytest
 from kinds_of_teeth import public_section
@@ -8,14 +9,16 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.load import config_of
-from facegear.build.lower_gear import check_lower_gear
+from facegear.build.config import resolved_values
+from facegear.build.early_checks import pair_findings
+from facegear.build.load import config_of, read_layers
 from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError, FacegearError
+from facegear.errors import ConfigErrors, FacegearError
 from facegear.pipeline.stages.teeth import geometry
 from facegear.schema.base import parse
 
+ROOT = Path(__file__).parents[3]
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
 
@@ -106,15 +109,6 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config():
     assert config.tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
 
 
-def test_radii_below_undercut_of_a_lower_gear_that_is_another_one_are_refused_by_key():
-    """Contact of the lower gear ended in Newton steps of its flank, long after the check of the config."""
-    section = parse(ToothPair, public_section("P4"))
-    refused = r"tooth_pair\.face_gear\.inner_radius_mm = 231\.0: must be between 242\.410 \(undercut of the"
-    with pytest.raises(ConfigError, match=rf"{refused} .* lower gear's limit$"):
-        check_lower_gear(section)
-    check_lower_gear(parse(ToothPair, public_section("P1")))
-
-
 SPRINGS = dict.fromkeys("xyz", 2e8)
 BODY = {"mass_kg": 1, "inertia_kg_m2": 0.002, "bearing_stiffness_n_per_m": SPRINGS}
 ONE_GEAR = {
@@ -167,3 +161,40 @@ def test_a_lower_gear_alone_at_right_angles_or_without_bodies_of_teeth_is_a_mach
     section = {**public_section("P2"), **bare, "offset_mm": 2.0}
     machine = ONE_GEAR["transmission"] | {"backlash_um": 100, "transmission_error": {"amplitude_um": 0}}
     config_of({"case": "kind", **ONE_GEAR, **given, "transmission": machine, "tooth_pair": section})
+
+
+def make_machine_of_two_gears(teeth: dict) -> dict:
+    """Return the plain values of the shipped helical machine with other teeth and two face gears."""
+    values = read_layers(ROOT / "config" / "helical.yaml") | {"tooth_pair": teeth}
+    values["transmission"] |= {
+        "face_gears": ["lower", "upper"],
+        "pinions": values["transmission"]["pinions"][:1],
+    }
+    return values
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "decides"),
+    [
+        ("P4", "face_gear.inner_radius_mm = 231.0", "undercut of the coast flank"),
+        ("P3", "pinion.middle_mm = 162.0", "to cover half of the gear's face"),
+    ],
+)
+def test_a_lower_gear_that_cannot_exist_is_refused_by_its_key(name, key, decides):
+    """The machine passed, and its run ended in a solver that found no flank at a height."""
+    with pytest.raises(ConfigErrors) as refused:
+        config_of(make_machine_of_two_gears(public_section(name)))
+    (line,) = refused.value.lines
+    assert f"tooth_pair.{key}: must be " in line and decides in line
+    assert "for the lower gear, which the pinions meet at offset_mm = " in line
+
+
+def test_a_check_tells_what_is_wrong_with_the_teeth_of_another_lower_gear():
+    """The upper gear's contact lies on its face, that of the lower gear beside it, which went unsaid."""
+    teeth = public_section("P4") | {"offset_mm": -15}
+    teeth["face_gear"]["inner_radius_mm"] = 243
+    teeth["pinion"]["middle_mm"] = 247
+    findings = pair_findings(resolved_values(config_of(make_machine_of_two_gears(teeth))))
+    assert len(findings.facts) == 2 and findings.facts[0].startswith("geometry: contact ratio 1.673")
+    assert len(findings.remarks) >= 2
+    assert all(line.startswith("lower gear: tooth_pair: ") for line in findings.remarks)
