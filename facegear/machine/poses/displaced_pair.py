@@ -21,9 +21,6 @@ from facegear.teeth.placement import FLANKS, RigidMotion, mirror_design, pair_at
 from facegear.teeth.tooth_family import SIDES, RelativeMotion
 from facegear.teeth.unloaded_contact import unloaded_contact
 
-SQUARE_AXES = RelativeMotion(1.0)
-"""Axes that cross at a right angle; the ratio of the motion does not matter."""
-
 
 @dataclass(frozen=True)
 class Pose:
@@ -49,9 +46,7 @@ class Pose:
     behind: float
 
 
-def pose_of(
-    pinion: RigidMotion, gear: RigidMotion, middle: float, axes: RelativeMotion = SQUARE_AXES
-) -> Pose:
+def pose_of(pinion: RigidMotion, gear: RigidMotion, middle: float, axes: RelativeMotion) -> Pose:
     """Return the pose of a pinion and a gear that have moved in the mesh frame from their nominal places.
 
     It is exact: the motion of the pinion relative to the gear is split into a turn of the gear, an
@@ -66,7 +61,7 @@ def pose_of(
     middle : float
         Position of the middle of the pinion's face on its axis, m.
     axes : RelativeMotion
-        Shaft angle and offset of the nominal axes; at a right angle and crossing by default.
+        Shaft angle and offset of the nominal axes.
 
     Returns
     -------

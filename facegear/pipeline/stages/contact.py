@@ -16,7 +16,7 @@ from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.options import ContactOptions
 from facegear.contact.pattern import FILLET_CONTACT
 from facegear.contact.position import LoadedPosition
-from facegear.contact.summary import StudiedContact, study_table
+from facegear.contact.summary import StudiedContact, join_flanks, study_table
 from facegear.contact.teeth import ContactSide
 from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
 from facegear.errors import FacegearError
@@ -28,7 +28,7 @@ from facegear.pipeline.outcome import Outcome
 from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
-from facegear.teeth.placement import FLANKS, GEARS, nominal_pairs, nominal_teeth, pair_at
+from facegear.teeth.placement import FLANKS, nominal_pairs, nominal_teeth, pair_at
 
 
 def contact(
@@ -100,18 +100,13 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
 
 STIFFNESS_COLUMNS = ("torque_n_m", "position", "k_average_n_per_m", "k_local_n_per_m", "interference_um")
 """Columns of table `ltca` from which the stiffness of a flank follows."""
-OTHER_FLANK_COLUMNS = [*STIFFNESS_COLUMNS, "gear", "flank"]
-"""Columns of table `ltca_by_flank`."""
 
 
 def _other_flanks(analysis: ContactAnalysis) -> pd.DataFrame:
     """Return table `ltca_by_flank` of `contents`."""
-    parts = [
-        analysis.ltca[number][list(STIFFNESS_COLUMNS)].assign(gear=GEARS[row], flank=FLANKS[column])
-        for (row, column), number in np.ndenumerate(analysis.numbers)
-        if number and not analysis.is_spur
-    ]
-    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=OTHER_FLANK_COLUMNS)
+    first, *further = (table[list(STIFFNESS_COLUMNS)] for table in analysis.ltca)
+    numbers = np.zeros_like(analysis.numbers) if analysis.is_spur else analysis.numbers
+    return join_flanks([first.iloc[:0], *further], numbers)[[*STIFFNESS_COLUMNS, "gear", "flank"]]
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
