@@ -215,6 +215,8 @@ def mount(
     stiffness, mass = reduction.stiffness.copy(), reduction.mass
     _require_positive("stiffness", stiffness)
     _require_positive("mass", mass)
+    if reduction.damping is not None:
+        _require_positive("damping", reduction.damping)
     first, size = MOTIONS * len(seats), len(stiffness)
     is_held = np.zeros(size, bool)
     springs = np.zeros((MOTIONS * len(feet), size))

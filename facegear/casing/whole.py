@@ -30,6 +30,8 @@ LIGHTEST, HEAVIEST = 4.0, 2e4
 """Mass over the cube of the largest extent, kg/m3, beyond which the unit of a casing is doubted.
 
 A frame of thin walls has 20, a solid block of steel 7850."""
+UNEVEN = 0.01
+"""Difference of masses along x, y and z over their mean from which rows are told to be in the wrong order."""
 UNITS = {"mm_t_s": 1e3, "si": 1.0}
 """Length units of a metre by the names of systems of units; forces are N in both."""
 UNIT_FACTOR = 1e3
@@ -152,7 +154,7 @@ class WholeCasing:
         motions = self.rigid_motions(np.mean(list(self.position_of_node.values()), axis=0))
         motions[:, 3:] /= length
         forces = scale[:, None] * (self.stiffness @ motions)
-        return float(np.abs(forces).max() / _largest(self.stiffness, scale))
+        return float(np.abs(forces).max() / (_largest(self.stiffness, scale) or 1.0))
 
 
 def rigid_rows(positions: Array, directions: Integers) -> Array:
@@ -310,7 +312,8 @@ def require_mass(casing: WholeCasing, mass: float | None) -> None:
     Raises
     ------
     InvalidInput
-        For a mass off by 1e3 or 1e-3, with the likely unit, or by more than a tenth of a given mass.
+        For a mass off by 1e3 or 1e-3, with the likely unit, or by more than a tenth of a given mass; where
+        it differs along x, y and z, for the order of its rows.
     """
     if not casing.mass.nnz:
         return
@@ -322,6 +325,11 @@ def require_mass(casing: WholeCasing, mass: float | None) -> None:
     )
     if low <= total <= high:
         return
+    parts = np.diagonal(casing.rigid_mass)[:3]
+    if not mass and np.ptp(parts) > UNEVEN * total:
+        value = ", ".join(f"{part:.4g}" for part in parts) + " kg along x, y, z"
+        condition = "equal along x, y and z: are its rows in another order than the dofs?"
+        raise InvalidInput("mass of the casing", value, condition)
     for factor, unit in ((UNIT_FACTOR, "mm_t_s"), (1.0 / UNIT_FACTOR, "si")):
         if low <= total * factor <= high:
             requirement = f"{total * factor:.4g} kg, as with units {unit}; is that the unit of its matrices?"

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 import scipy
@@ -178,13 +179,11 @@ def read_lines(path: Path) -> list[str]:
         If it is missing, empty or not text.
     """
     try:
-        lines = path.read_text("ascii").splitlines()
+        lines = path.read_text("utf-8-sig").splitlines()
     except FileNotFoundError:
         raise MatrixFault("no such file") from None
     except UnicodeDecodeError:
-        raise MatrixFault(
-            "it is not text: write the matrix in one of the formats listed for casings"
-        ) from None
+        raise MatrixFault("it is not text in UTF-8") from None
     except OSError as error:
         raise MatrixFault(f"it cannot be read ({plain_reason(error)})") from None
     if not any(line.strip() for line in lines):
@@ -216,11 +215,17 @@ def read_numbers(path: Path, columns: int, separator: str | None = None) -> Arra
     """
     if not path.is_file():
         raise MatrixFault("no such file")
+    if not path.stat().st_size:
+        raise MatrixFault("it is empty")
     try:
-        numbers = np.loadtxt(path, delimiter=separator, ndmin=2)
+        with catch_warnings():
+            simplefilter("ignore", UserWarning)  # of numpy, on a file without numbers
+            numbers = np.loadtxt(path, delimiter=separator, ndmin=2, encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         raise MatrixFault(f"it is not a table of numbers ({_short(error)})") from None
-    if numbers.size == 0 or (columns and numbers.shape[1] != columns):
+    if numbers.size == 0:
+        raise MatrixFault("it is empty")
+    if columns and numbers.shape[1] != columns:
         raise MatrixFault(f"it must have {columns} numbers in a line")
     return numbers
 

@@ -3,11 +3,12 @@
 import csv
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy
 
-from facegear.arrays import Array, Arrays, Integers
+from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.io.matrices.labelled_matrix import LabelledMatrix, MatrixFault, read_lines, read_numbers
 
 NPZ_NAMES = ("stiffness", "mass", "damping", "dofs", "nodes")
@@ -85,14 +86,17 @@ def read_npz(path: Path) -> Arrays:
         For a file that is not valid, or holds another array.
     """
     try:
-        with np.load(path) as arrays:
+        archive = np.load(path)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise MatrixFault("it holds a single array without a name, as np.save writes it; use np.savez")
+        with archive as arrays:
             unknown_names = [name for name in arrays.files if name not in NPZ_NAMES]
             if unknown_names:
                 raise MatrixFault(f"it holds {unknown_names[0]!r}; arrays may be {', '.join(NPZ_NAMES)}")
             return {name: np.asarray(arrays[name]) for name in arrays.files}
     except FileNotFoundError:
         raise MatrixFault("no such file") from None
-    except (ValueError, OSError, zipfile.BadZipFile, KeyError):
+    except (ValueError, OSError, EOFError, zipfile.BadZipFile, KeyError):
         raise MatrixFault("it is no npz file of numbers") from None
 
 
@@ -131,7 +135,8 @@ def npz_matrix(
             raise MatrixFault(
                 f"its array `dofs` has shape {table.shape}; it must have two columns, node and dof"
             )
-        dofs = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
+        whole_numbers = _whole_numbers(table, "nodes and dofs")
+        dofs = whole_numbers[:, 0], whole_numbers[:, 1]
     return _whole(arrays[quantity], dofs)
 
 
@@ -158,9 +163,10 @@ def read_dofs(path: Path) -> tuple[Integers, Integers]:
     if header[:2] != ["node", "dof"]:
         raise MatrixFault(f"its first line must be `node,dof`, not {lines[0][:60]!r}")
     try:
-        rows = np.array([line.split(",")[:2] for line in lines[1:] if line.strip()], np.int64)
-    except ValueError:
-        raise MatrixFault("nodes and dofs must be whole numbers") from None
+        cells = [line.split(",") for line in lines[1:] if line.strip()]
+        rows = np.array([(int(row[0]), int(row[1])) for row in cells], np.int64)
+    except (ValueError, IndexError):
+        raise MatrixFault("each line must hold two whole numbers, node and dof") from None
     if rows.size == 0:
         raise MatrixFault("it lists no dofs")
     return rows[:, 0], rows[:, 1]
@@ -188,7 +194,7 @@ def read_nodes(path: Path) -> tuple[Integers, Array, list[str]]:
         table = read_npz(path).get("nodes", np.zeros((0, 0)))
         if table.ndim != 2 or table.shape[1] != 4:
             raise MatrixFault("it must hold an array `nodes` of four columns: node, x, y, z in mm")
-        numbers, patches = table.astype(float), [""] * len(table)
+        numbers, patches = _real(table, "nodes"), [""] * len(table)
     else:
         rows = [row for row in csv.reader(read_lines(path)) if any(cell.strip() for cell in row)]
         header = [name.strip() for name in rows[0]]
@@ -201,17 +207,33 @@ def read_nodes(path: Path) -> tuple[Integers, Array, list[str]]:
         patches = [row[4].strip() if len(row) > 4 else "" for row in rows[1:]]
     if not np.isfinite(numbers).all():
         raise MatrixFault("coordinates must be finite numbers")
-    nodes = numbers[:, 0].astype(np.int64)
+    nodes = _whole_numbers(numbers[:, 0], "numbers of nodes")
     unique, counts = np.unique(nodes, return_counts=True)
     if (counts > 1).any():
         raise MatrixFault(f"node {unique[np.argmax(counts > 1)]} stands twice")
     return nodes, numbers[:, 1:], patches
 
 
-def _whole(matrix: Array, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
+def _real(array: AnyArray, what: str) -> Array:
+    """Return an array as real numbers; refuse complex ones and texts by the word for what they are."""
+    if array.dtype.kind not in "iuf":
+        raise MatrixFault(f"{what} must be real numbers, not {array.dtype}")
+    return np.asarray(array, float)
+
+
+def _whole_numbers(array: AnyArray, what: str) -> Integers:
+    """Return an array as whole numbers; refuse fractions, and numbers that are not finite."""
+    numbers = _real(array, what)
+    if not np.isfinite(numbers).all() or (numbers != np.floor(numbers)).any():
+        raise MatrixFault(f"{what} must be whole numbers")
+    return numbers.astype(np.int64)
+
+
+def _whole(matrix: Any, dofs: tuple[Integers, Integers]) -> LabelledMatrix:
     """Return a matrix that is stored whole, with its rows."""
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise MatrixFault(
-            f"it has shape {' x '.join(map(str, matrix.shape))}; as many columns as rows are needed"
-        )
+        shape = " x ".join(map(str, matrix.shape)) or "of a single number"
+        raise MatrixFault(f"it has shape {shape}; as many columns as rows are needed")
+    if matrix.dtype.kind not in "iuf":
+        raise MatrixFault(f"its entries must be real numbers, not {matrix.dtype}")
     return LabelledMatrix(*dofs, scipy.sparse.csc_array(matrix, dtype=float))

@@ -66,6 +66,21 @@ def test_a_bad_value_is_refused_by_its_key(changes, start, words):
     assert words in line
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("quantity", "factor", "words"),
+    [("damping", -1e-6, "without negative eigenvalues"), ("stiffness", 0.0, "holds every row")],
+)
+def test_matrices_that_give_energy_or_hold_nothing_are_refused(quantity, factor, words, tmp_path):
+    with np.load(EXAMPLE.parent / "casing" / "box.npz") as archive:
+        arrays = dict(archive)
+    arrays[quantity] = factor * arrays["stiffness"]
+    np.savez(tmp_path / "box.npz", **arrays)
+    line = refusal(stiffness=str(tmp_path / "box.npz"))
+    assert f"{KEY}.{quantity} = " in line
+    assert words in line
+
+
 def test_a_foot_of_springs_with_too_few_of_them_is_refused():
     line = refusal(feet=[{"node": 301, "stiffness_n_per_m": {"x": 1e8, "y": 1e8, "z": 1e8}}])
     assert "3 free motions" in line

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 
 from facegear.casing.files import read_casing
 from facegear.casing.whole import require_free, require_mass
@@ -197,6 +198,10 @@ def test_a_skew_part_above_rounding_is_refused(tmp_path):
         ("dofs", "node,dof\n101,1\n", "stiffness of the casing.*it has 12 rows and 12 columns, but 1 dof"),
         ("dofs", "row,dof\n101,1\n", "first line must be node,dof"),
         ("dofs", "node,dof\n101,x\n", "whole numbers"),
+        ("dofs", "node,dof\n101\n", "two whole numbers"),
+        ("nodes", "node,x_mm,y_mm,z_mm\n101,0,0,0\n205.5,1,0,0\n", "numbers of nodes must be whole numbers"),
+        ("stiffness", "", "it is empty"),
+        ("stiffness", "\n\n", "it is empty"),
         ("nodes", "node,x_mm,y_mm,z_mm\n101,0,0,0\n", "node 205"),
         ("nodes", "node,x,y,z\n101,0,0,0\n", "first line must be node,x_mm,y_mm,z_mm"),
         ("nodes", "node,x_mm,y_mm,z_mm\n101,0,0,0\n101,1,0,0\n", "node 101 stands twice"),
@@ -211,6 +216,72 @@ def test_lists_and_tables_that_do_not_fit_are_refused(key, content, reason, tmp_
         read(**names)
     assert "of the casing = " in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("name", "change", "reason"),
+    [
+        ("stiffness", lambda matrix: matrix * (1.0 + 0.01j), "real numbers, not complex128"),
+        ("stiffness", lambda matrix: matrix.astype(str), "real numbers"),
+        ("stiffness", lambda matrix: matrix[0, 0], "shape of a single number"),
+        ("dofs", lambda rows: rows + 0.5, "nodes and dofs must be whole numbers"),
+        ("dofs", lambda rows: np.where(rows == 3, np.nan, rows), "nodes and dofs must be whole numbers"),
+        ("nodes", lambda table: table + [0.5, 0, 0, 0], "numbers of nodes must be whole numbers"),
+    ],
+)
+def test_arrays_of_an_npz_that_are_not_real_or_whole_are_refused(name, change, reason, tmp_path):
+    names = write("npz", tmp_path)
+    with np.load(names["stiffness"]) as archive:
+        arrays = dict(archive)
+    arrays[name] = change(arrays[name])
+    np.savez(names["stiffness"], **arrays)
+    with pytest.raises(InvalidInput, match=reason):
+        read(**names)
+
+
+def test_an_empty_npz_and_a_single_array_are_refused(tmp_path):
+    path = tmp_path / "k.npz"
+    path.write_bytes(b"")
+    with pytest.raises(InvalidInput, match="it is no npz file"):
+        read(stiffness=str(path))
+    np.save(tmp_path / "k.npy", np.eye(12))
+    (tmp_path / "k.npy").replace(path)
+    with pytest.raises(InvalidInput, match=r"use np\.savez"):
+        read(stiffness=str(path))
+
+
+def test_a_complex_matrix_market_file_is_refused(tmp_path):
+    names = write("matrix_market", tmp_path)
+    path = Path(names["stiffness"])
+    scipy.io.mmwrite(path, scipy.io.mmread(path) * (1.0 + 0.01j))
+    with pytest.raises(InvalidInput, match="real numbers"):
+        read(**names)
+
+
+def test_lists_and_tables_of_a_spreadsheet_are_read(tmp_path):
+    names = write("csv", tmp_path)
+    before = read(**names)
+    for name in names.values():
+        Path(name).write_text(Path(name).read_text(), "utf-8-sig")
+    after = read(**names)
+    np.testing.assert_array_equal(after.stiffness.toarray(), before.stiffness.toarray())
+
+
+def test_a_patch_may_have_letters_of_any_language(tmp_path):
+    names = write("csv", tmp_path)
+    text = "node,x_mm,y_mm,z_mm,patch\n101,0,0,0,Gehäuse\n205,100,0,0,\n"
+    Path(names["nodes"]).write_text(text, "utf-8")
+    assert read(**names).patches == ["Gehäuse", ""]
+
+
+def test_rows_by_direction_first_are_told_by_the_mass(tmp_path):
+    names = write("csv", tmp_path)
+    rows = sorted(files.rows(), key=lambda row: row[::-1])
+    text = "".join(f"{node},{direction}\n" for node, direction in rows)
+    Path(names["dofs"]).write_text("node,dof\n" + text)
+    with pytest.raises(InvalidInput, match="rows in another order than the dofs"):
+        require_mass(read(**names), None)
 
 
 def test_numbers_alone_need_a_list_of_dofs(tmp_path):
