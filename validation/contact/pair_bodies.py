@@ -9,9 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.surface import gauges_on
 from facegear.contact.gear_flank import BUILDERS
+from facegear.contact.pressure import KERNEL
 from facegear.contact.root_gauges import fillet_sides
 from facegear.contact.teeth import LOADED_SIDE, contact_side
 from facegear.strength.root_stress import down_the_fillet
@@ -32,6 +33,11 @@ FIXED_FACES = {
 REACH = 2.0
 """Largest gap of the faces that Kratos may close, in ways of the pinion's support along the normal. The edges
 of the other body would cut faces farther away: slivers that make its condensed equations ill-conditioned."""
+MIDDLE = 1 / 3
+"""Part of the contact line at each end where pressures are not compared: there they rise towards the edge of
+the pinion's face, which no element can give."""
+ROUNDING = 1e-9
+"""Part of the pinion's face by which a plane may lie outside."""
 RING = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a square cell in their order round it."""
 OCTANTS = tuple((i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1))
@@ -155,14 +161,35 @@ class PairBodies:
         stress = (gauges.normal @ displacement.ravel()).reshape(gauges.position.shape[:2])
         return largest_inside(stress, along(body, gauges_on(tooth.nodes, grid, material).position))
 
+    def is_in_middle(self, y: Array) -> Mask:
+        """Mark the places along the pinion's axis at least MIDDLE of the contact line from both of its ends.
+
+        The pinion's face is the narrower one, so that the line runs over all of it.
+
+        Parameters
+        ----------
+        y : (...) array
+            Places, m.
+
+        Returns
+        -------
+        (...) array of bool
+            True in the middle.
+        """
+        reach = (0.5 - MIDDLE + ROUNDING) * self.design.pinion.width
+        return np.asarray(np.abs(y - self.design.middle) < reach)
+
     def largest_pressure(self, pressure: Array) -> float:
-        """Return the largest pressure at the nodes of the pinion's flank, tip edge and ends of the face left
-        out.
+        """Return the largest pressure on the pinion's flank in the middle of the contact line, the tip edge
+        left out.
+
+        Of each plane its peak, averaged with its neighbours' as line loads are in
+        `facegear.contact.pressure`: nodes in the corners and in the middle of a quadratic element alternate.
 
         Parameters
         ----------
         pressure : (n,) array
-            Pressure of the nodes, Pa.
+            Pressure of the nodes, Pa; nan where a program has no node.
 
         Returns
         -------
@@ -171,9 +198,11 @@ class PairBodies:
         """
         tooth = self.teeth["pinion"]
         grid = tooth.surfaces[f"flank_{LOADED_SIDE['pinion']}"].nodes[2:]
-        at = along("pinion", tooth.nodes[grid])
-        inside = np.abs(at - at.mean()) < (0.5 - ENDS) * np.ptp(at)
-        return float(pressure[grid[inside]].max())
+        points = tooth.nodes[grid]
+        inside = self.is_in_middle(points[..., 1].mean(axis=0))
+        way = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=-1).cumsum(axis=0)
+        peaks = [peak_pressure(*plane) for plane in zip(way.T, pressure[grid].T, strict=True)]
+        return float(np.convolve(peaks, KERNEL, "same")[inside].max())
 
     def contact_nodes(self) -> Array:
         """Return the positions of the nodes of the pinion that can touch.
@@ -221,6 +250,33 @@ def contact_faces(tooth: FeTooth) -> Integers:
     """
     side = LOADED_SIDE[tooth.body]
     return np.concatenate([tooth.faces[f"{name}_{side}"] for name in ("flank", "fillet")])
+
+
+def peak_pressure(at: Array, pressure: Array) -> float:
+    """Return the largest pressure of a plane across the strip of contact, between its nodes, too.
+
+    In Hertz's contact the square of the pressure is a parabola: that through the largest node and its
+    neighbours has its peak between them. Where a neighbour carries nothing, the largest node is returned.
+
+    Parameters
+    ----------
+    at : (n,) array
+        Places of the nodes across the strip, growing, m.
+    pressure : (n,) array
+        Pressure of the nodes, Pa; nan where a program has none.
+
+    Returns
+    -------
+    float
+        Pressure, Pa; 0 where no node carries any.
+    """
+    at, pressure = at[~np.isnan(pressure)], pressure[~np.isnan(pressure)]
+    largest = int(np.argmax(pressure))
+    three = slice(max(largest - 1, 0), largest + 2)
+    if np.count_nonzero(pressure[three] > 0.0) < 3:
+        return float(pressure[largest])
+    curve, slope, middle = np.polyfit(at[three] - at[largest], pressure[three] ** 2, 2)
+    return float(np.sqrt(middle - slope**2 / (4.0 * curve)))
 
 
 def _nearest(points: Array, targets: Array) -> Array:

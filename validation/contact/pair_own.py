@@ -44,9 +44,9 @@ class PairRequest:
 class Answer:
     """Result of a program for the pair under its torque (N m).
 
-    Turn (rad) of the pinion; largest `pressure` (Pa) on its flank and largest tension (Pa) at both fillets;
-    `path`, the middle of the contact forces along the pinion's axis (m); `exponent` of the torque as a power
-    of the turn, nan where the program does not say.
+    Turn (rad) of the pinion; largest `pressure` (Pa) on its flank in the middle of the contact line, and
+    largest tension (Pa) at both fillets; `path`, the middle of the contact forces along the pinion's axis
+    (m); `exponent` of the torque as a power of the turn, nan where the program does not say.
     """
 
     torque: float
@@ -129,11 +129,13 @@ def own_answer(request: PairRequest) -> Answer:
     blocks = ({(0, 0): body.compliance.loaded_tooth} for body in (pinion, gear))
     result = SectorPair(flanks, *blocks).solve(pair.position, (request.torque,))[0]
     (spot,) = result.spots
-    pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
+    flank = flank_pressure([result], flanks, pair.materials)
+    (load,) = flank.loads
+    pressure = load.pressure[pair.is_in_middle(flank.lines.y[load.plane])].max()
     return Answer(
         torque=request.torque,
         turn=result.ste / pair.design.normal_arm,
-        pressure=pressure,
+        pressure=float(pressure),
         pinion_root=pinion.root("pinion", spot.on_pinion),
         gear_root=gear.root("face_gear", spot.on_gear),
         path=float(np.average(pair.contact_nodes()[..., 1].ravel(), weights=spot.on_pinion)),

@@ -84,8 +84,9 @@ def pair_peer_study(
 ) -> pd.DataFrame:
     """Compare three programs, a row for each program and mesh from the coarsest to the finest.
 
-    Stiffness on the line of action, largest pressure on the pinion's flank, largest tension at the fillets,
-    each with its distance in percent from the first row, ours on the last mesh with the strip resolved.
+    Stiffness on the line of action, largest pressure on the pinion's flank in the middle of the contact line,
+    largest tension at the fillets, each with its distance in percent from the first row, ours on the last
+    mesh with the strip resolved.
 
     Parameters
     ----------
@@ -245,7 +246,7 @@ def _calculix(pair: PairBodies, level: str, our_answer: Answer, folder: Path, th
         raise FacegearError(f"CalculiX did not come to {our_answer.torque:g} N m: see {deck}")
     run, answers = result.run, deck.with_suffix(".frd")
     displacement = 1e-3 * _calculix_displacement(pair, answers)
-    pressure = np.zeros(len(pair.teeth["pinion"].nodes))
+    pressure = np.full(len(pair.teeth["pinion"].nodes), np.nan)
     for label, (*_, value) in read_nodes(answers, "CONTACT", 4).items():
         if label <= len(pressure):
             pressure[label - 1] = 1e6 * value
@@ -281,7 +282,8 @@ def _kratos(pair: PairBodies, level: str, our_answer: Answer, folder: Path, thre
 
 
 def _read(pair: PairBodies, torque: float, turn: float, displacement: Array, pressure: Array) -> Answer:
-    """Read the answer from displacements (n, 3) m of both bodies and pressures (Pa) of their nodes."""
+    """Read the answer from displacements (n, 3) m and pressures (n,) Pa, nan where there are none, of all
+    nodes of both bodies."""
     count = len(pair.teeth["pinion"].nodes)
     return Answer(
         torque=torque,
@@ -289,7 +291,7 @@ def _read(pair: PairBodies, torque: float, turn: float, displacement: Array, pre
         pressure=pair.largest_pressure(pressure),
         pinion_root=pair.root_stress("pinion", displacement[:count]),
         gear_root=pair.root_stress("face_gear", displacement[count:]),
-        path=pair.path(pressure[:count]),
+        path=pair.path(np.nan_to_num(pressure[:count])),
     )
 
 

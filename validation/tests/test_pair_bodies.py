@@ -6,7 +6,7 @@ from contact_bodies import STEEL, pair_design
 
 from facegear.teeth.mesh_sizes import MeshSizes
 from facegear.teeth.tooth_mesh import CORNERS
-from validation.contact.pair_bodies import PairBodies, held_nodes
+from validation.contact.pair_bodies import PairBodies, held_nodes, peak_pressure
 from validation.contact.pair_peer import POSITION, middle
 
 TURN = 1e-3
@@ -83,10 +83,42 @@ def test_a_small_rigid_motion_stresses_no_fillet_and_a_growing_body_does(cut_out
     assert grown == pytest.approx(1e-4 * STEEL.young_modulus / (1.0 - STEEL.poisson_ratio), rel=1e-9)
 
 
-def test_the_largest_pressure_is_sought_off_the_edges_of_the_flank(cut_out):
-    tooth = cut_out.teeth["pinion"]
+def test_the_pressure_compared_is_the_largest_in_the_middle_third_of_the_contact_line():
+    pair = PairBodies(middle(pair_design()), MeshSizes(3e-3, 1e-3, 4e-3), (STEEL, STEEL), POSITION)
+    tooth, design = pair.teeth["pinion"], pair.design
     grid = tooth.surfaces["flank_right"].nodes
-    pressure = np.zeros(len(tooth.nodes))
-    pressure[grid[0]] = pressure[grid[:, 0]] = pressure[grid[:, -1]] = 5.0
-    pressure[grid[grid.shape[0] // 2, grid.shape[1] // 2]] = 2.0
-    assert cut_out.largest_pressure(pressure) == 2.0
+    y = tooth.nodes[grid][..., 1].mean(axis=0)
+    inside = design.pinion.width / 2 - np.abs(y - design.middle) > 0.333 * design.pinion.width
+    np.testing.assert_array_equal(pair.is_in_middle(y), inside)
+    assert 3 < np.count_nonzero(inside) < inside.size - 4
+    first, last = np.flatnonzero(inside)[[0, -1]]
+    row, count = grid[grid.shape[0] // 2], inside.size
+
+    def largest(of_planes):
+        pressure = np.zeros(len(tooth.nodes))
+        pressure[row] = of_planes
+        return pair.largest_pressure(pressure)
+
+    # what stands beyond the neighbours does not count, what alternates from plane to plane cancels out
+    far = np.abs(np.arange(count) - (first + last) / 2) > (last - first) / 2 + 1
+    assert largest(np.where(far, 5.0, 2.0)) == pytest.approx(2.0, rel=1e-12)
+    assert largest(2.0 + 0.1 * (-1.0) ** np.arange(count)) == pytest.approx(2.0, rel=1e-12)
+    assert largest(np.arange(count) + 1.0) == pytest.approx(last + 1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("beside", np.linspace(-0.5, 0.5, 5))
+def test_the_peak_of_hertz_pressure_is_found_between_nodes(beside):
+    half, step, largest = 0.4e-3, 0.18e-3, 1.2e9
+    at = step * (np.arange(-4.0, 5.0) + beside)
+    pressure = largest * np.sqrt(np.maximum(1.0 - (at / half) ** 2, 0.0))
+    assert peak_pressure(at, pressure) == pytest.approx(largest, rel=1e-12)
+    # a program that has no node in places
+    gaps = np.where(np.arange(9) % 4 == 3, np.nan, pressure)
+    assert 0.8 * largest < peak_pressure(at, gaps) < largest * (1.0 + 1e-12)
+
+
+def test_where_a_neighbour_carries_nothing_the_peak_is_that_of_the_node():
+    at = np.arange(5.0)
+    assert peak_pressure(at, np.array([0.0, 0.0, 3.0, 2.0, 0.0])) == 3.0
+    assert peak_pressure(at, np.array([3.0, 2.0, 0.0, 0.0, 0.0])) == 3.0
+    assert peak_pressure(at, np.zeros(5)) == 0.0
