@@ -18,6 +18,7 @@ from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque, with_wrenches
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
+from facegear.teeth.placement import FLANKS, GEARS, nominal_pairs, nominal_teeth
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -145,6 +146,10 @@ def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
     }
 
 
+STIFFNESS_COLUMNS = ("torque_n_m", "position", "k_average_n_per_m", "k_local_n_per_m", "interference_um")
+"""Columns of table `ltca` from which the stiffness of a flank follows."""
+
+
 @dataclass(frozen=True, eq=False)
 class ContactAnalysis:
     """Solved contact of the different pairs that flanks are part of; tables and arrays are made when first
@@ -174,6 +179,19 @@ class ContactAnalysis:
             return tables
         on = ["torque_n_m", "position"]
         return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
+
+    @cached_property
+    def other_flanks(self) -> pd.DataFrame:
+        """The columns STIFFNESS_COLUMNS of `ltca` for the flanks whose design differs from the upper gear's
+        drive flank, by gear and flank; without rows for spur teeth.
+        """
+        parts = [self.ltca[0][list(STIFFNESS_COLUMNS)].iloc[:0].assign(gear="", flank="")]
+        for gear, numbers in zip(GEARS, self.numbers, strict=True):
+            for flank, number in zip(FLANKS, numbers, strict=True):
+                if number and not self.models[0].design.is_spur:
+                    rows = self.ltca[int(number)][list(STIFFNESS_COLUMNS)]
+                    parts.append(rows.assign(gear=gear, flank=flank))
+        return pd.concat(parts if len(parts) == 1 else parts[1:], ignore_index=True)
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
@@ -236,7 +254,8 @@ def contact_analysis(
     flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     every_flank: bool = True,
-    known_contact: KnownContact | None = None,
+    known_contacts: Sequence[KnownContact | None] = (),
+    gears: Sequence[str] | None = None,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
@@ -255,8 +274,10 @@ def contact_analysis(
         Torques, positions and options.
     every_flank : bool
         Whether all flanks are solved, not only the upper gear's drive flank.
-    known_contact : KnownContact, optional
-        Contact of a pair that differs little, with the same nodes and plan.
+    known_contacts : Sequence[KnownContact or None]
+        Contact of pairs that differ little, with the same nodes and plan, in the order of `flanks`.
+    gears : Sequence[str], optional
+        Gears whose flanks are solved; those that `flanks` are of if not given.
 
     Returns
     -------
@@ -268,12 +289,15 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    models, numbers = flank_models(design, flanks)
+    models, numbers = flank_models(design, flanks, gears)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
-    return ContactAnalysis(
-        models, [_solve_model(pair_model, materials, plan, known_contact) for pair_model in models], numbers
-    )
+    known = dict(zip(nominal_pairs(design), known_contacts, strict=False))
+    results = [
+        _solve_model(pair_model, materials, plan, known.get(nominal_teeth(pair_model.design)))
+        for pair_model in models
+    ]
+    return ContactAnalysis(models, results, numbers)
 
 
 def _solve_model(

@@ -28,8 +28,7 @@ from facegear.pipeline.outcome import Outcome
 from facegear.quantities import BODIES, Body
 from facegear.schema.contact import Contact
 from facegear.schema.stiffness import MeshStiffness
-from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import FLANKS, GEARS, nominal_pairs, nominal_teeth, pair_at
+from facegear.teeth.placement import FLANKS, nominal_pairs, nominal_teeth, pair_at
 
 
 def contact(
@@ -70,50 +69,32 @@ def contact(
     teeth, plan = pair(tooth_pair), contact_plan(contact)
     flanks = list(zip(*map(every_flank_from_arrays, (pinion, face_gear)), strict=True))
     analysis = contact_analysis(teeth.design, teeth.materials, flanks, plan)
-    return Outcome(contents(analysis, teeth.design), _mean_stiffness(analysis.ltca[0]))
+    return Outcome(contents(analysis), _mean_stiffness(analysis.ltca[0]))
 
 
-def contents(analysis: ContactAnalysis, design: PairDesign) -> dict[str, Any]:
+def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     """Return the tables and arrays that stage contact stores.
 
     Parameters
     ----------
     analysis : ContactAnalysis
         Solved contact of all flanks that differ.
-    design : PairDesign
-        The pair.
 
     Returns
     -------
     dict[str, Any]
         Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; `ltca` and `by_torque` of
-        the upper gear's drive flank, and `pressure` of spur teeth as well. Table `ltca_by_flank`: the columns
-        STIFFNESS_COLUMNS of `ltca` for the other flanks that differ from it by their design, by gear and
-        flank; without rows for spur teeth.
+        the upper gear's drive flank, and `pressure` of spur teeth as well. Table `ltca_by_flank`:
+        `ContactAnalysis.other_flanks`.
     """
     return {
         "ltca": analysis.ltca[0],
-        "ltca_by_flank": _other_flanks(analysis, design),
+        "ltca_by_flank": analysis.other_flanks,
         "by_torque": analysis.by_torque[0],
         "by_flank": analysis.by_flank,
         "pressure": analysis.stored_pressure,
         "loads": analysis.loads,
     }
-
-
-STIFFNESS_COLUMNS = ("torque_n_m", "position", "k_average_n_per_m", "k_local_n_per_m", "interference_um")
-"""Columns of table `ltca` from which the stiffness of a flank follows."""
-
-
-def _other_flanks(analysis: ContactAnalysis, design: PairDesign) -> pd.DataFrame:
-    """Return table `ltca_by_flank` of `contents`."""
-    parts = [analysis.ltca[0][list(STIFFNESS_COLUMNS)].iloc[:0].assign(gear="", flank="")]
-    for gear, variants in zip(GEARS, analysis.loads["flank_variant"], strict=True):
-        for flank, variant in zip(FLANKS, variants, strict=True):
-            if variant and not design.is_spur:
-                rows = analysis.ltca[int(variant)][list(STIFFNESS_COLUMNS)]
-                parts.append(rows.assign(gear=gear, flank=flank))
-    return pd.concat(parts if len(parts) == 1 else parts[1:], ignore_index=True)
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
