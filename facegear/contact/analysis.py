@@ -292,9 +292,9 @@ def contact_analysis(
     models, numbers = flank_models(design, flanks, gears)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
-    known = dict(zip(nominal_pairs(design), known_contacts, strict=False))
+    contact_by_teeth = dict(zip(nominal_pairs(design), known_contacts, strict=False))
     results = [
-        _solve_model(pair_model, materials, plan, known.get(nominal_teeth(pair_model.design)))
+        _solve_model(pair_model, materials, plan, contact_by_teeth.get(nominal_teeth(pair_model.design)))
         for pair_model in models
     ]
     return ContactAnalysis(models, results, numbers)

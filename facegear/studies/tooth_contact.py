@@ -123,14 +123,14 @@ class PairExcitation:
         numbers = answers.numbers[[rows[gear] for _, gear in layout.meshes]].T.ravel()
         forces = [loads.largest[numbers == number].max(initial=0.0) for number in range(len(flanks))]
         # without any load the first contact stands for all
-        loaded = [(flank, force * flank.arm) for flank, force in zip(flanks, forces, strict=True) if force]
-        loaded = loaded or [(flanks[0], 0.0)]
+        torques = [(flank, force * flank.arm) for flank, force in zip(flanks, forces, strict=True) if force]
+        torques = torques or [(flanks[0], 0.0)]
         return {
             ERROR_RANGE: 1e6 * answers.error_range,
             ERROR_HARMONIC: 1e6 * answers.error_harmonic,
-            PRESSURE: 1e-6 * float(np.max([flank.pressure.at(torque) for flank, torque in loaded])),
+            PRESSURE: 1e-6 * float(np.max([flank.pressure.at(torque) for flank, torque in torques])),
             **{
-                ROOTS[body]: 1e-6 * max(flank.roots[body](torque) for flank, torque in loaded)
+                ROOTS[body]: 1e-6 * max(flank.roots[body](torque) for flank, torque in torques)
                 for body in flanks[0].roots
             },
         }
@@ -181,12 +181,14 @@ def meshes_in_contact(
     bodies, own_nodes = _bodies(pair, flanks, gears), _nodes(pair["tooth_pair"])
 
     def solve(
-        section: ToothPair, compliances: Sequence[PairFlanks], known: Sequence[KnownContact | None]
+        section: ToothPair, compliances: Sequence[PairFlanks], known_contacts: Sequence[KnownContact | None]
     ) -> ContactAnalysis:
-        """Solve the contact of the flanks of a pair that differ, near `known` ones."""
+        """Solve the contact of the flanks of a pair that differ, near `known_contacts`."""
         design = pair_design(section)
-        every = not design.is_spur
-        return contact_analysis(design, materials(section), compliances, plan, every, known, gears)
+        has_own_flanks = not design.is_spur
+        return contact_analysis(
+            design, materials(section), compliances, plan, has_own_flanks, known_contacts, gears
+        )
 
     @cache
     def nominal() -> list[KnownContact | None]:
@@ -199,11 +201,12 @@ def meshes_in_contact(
             analysis = solve(section, compliances, ())
         except FacegearError:
             return []
-        positions, known = even_positions(plan.positions), {}
+        positions = even_positions(plan.positions)
+        contact_by_teeth: dict[PairDesign, KnownContact | None] = {}
         for model, (results, _) in zip(analysis.models, analysis.results, strict=True):
             contact = known_contact(results, positions, model.flanks.pinion.shape, model.design.normal_arm)
-            known.setdefault(nominal_teeth(model.design), contact)
-        return [known.get(teeth) for teeth in nominal_pairs(pair_design(section), gears)]
+            contact_by_teeth.setdefault(nominal_teeth(model.design), contact)
+        return [contact_by_teeth.get(teeth) for teeth in nominal_pairs(pair_design(section), gears)]
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
@@ -215,10 +218,10 @@ def meshes_in_contact(
         backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
         compliances, tensions = bodies(values, section)
         analysis = solve(section, compliances, nominal() if _nodes(values) == own_nodes else ())
-        curve, others = curve_from_contact(analysis.ltca[0], request), analysis.other_flanks
+        curve, other_flanks = curve_from_contact(analysis.ltca[0], request), analysis.other_flanks
         harmonics = None
-        if len(others):
-            harmonics = stiffness_from_contact(analysis.ltca[0], request, others).harmonics
+        if len(other_flanks):
+            harmonics = stiffness_from_contact(analysis.ltca[0], request, other_flanks).harmonics
         numbers = ToothNumbers.of_config(values)
         return PairExcitation(
             numbers=numbers,
