@@ -147,7 +147,9 @@ class PassingTension:
         by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes, variant)
         torques, count = np.unique(loads["torque_n_m"]), np.unique(loads["position"]).size
         teeth = np.array(sorted(by_tooth))
-        every = sp.vstack([by_tooth[tooth] for tooth in teeth], format="csr")
+        # loads of flanks with more nodes make the matrices wider than this flank is
+        nodes = self.readings.shape[-1]
+        every = sp.vstack([by_tooth[tooth] for tooth in teeth], format="csr")[:, :nodes]
         first_rows = np.arange(teeth.size)[:, None] * (torques.size * count)
 
         def force(row: int) -> sp.csr_matrix:
