@@ -19,7 +19,6 @@ from facegear.schema.studies import Search
 from facegear.schema.tolerances import Tolerances
 from facegear.schema.transmission import Transmission
 from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import GEARS
 from facegear.teeth.unloaded_contact import normal_backlash
 
 JAM = 1e-8
@@ -309,12 +308,13 @@ def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
     ConfigError
         If the pair jams or does not mesh.
     """
-    assembly, design = pair.assembly.model_dump(), pair_design(pair)
+    errors = {key: value for key, value in pair.assembly.model_dump().items() if value != 0.0}
+    design = pair_design(pair)
     try:
         backlash = normal_backlash(design, tuple(beside))
     except NotConverged:
         raise ConfigError(
-            "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
+            "tooth_pair.assembly", errors, "smaller errors, with which the flanks meet"
         ) from None
     if backlash < -JAM:
         min_thinning = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash
@@ -363,8 +363,6 @@ OTHER_SURFACE = (
     f"a key of transmission, dynamics or lubrication {STATIC}: a pair that differs is another surface"
 )
 """Requirement on keys that samples and designs may change beside an operating pose."""
-ALONE = "the contact of a gear alone is that of an upper one"
-"""Reason of a refusal: a lower gear on such axes has other teeth than an upper one."""
 REST = "the contact of samples and designs is that of the pair as assembled"
 """Reason of a refusal: varied machines have no contact in the loaded position."""
 
@@ -384,8 +382,8 @@ def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness
     Raises
     ------
     ConfigError
-        For a stiffness given as harmonics, a shaper with no more teeth than the pinion, whose flanks touch
-        along lines, or a lower gear alone whose teeth differ from those of an upper one.
+        For a stiffness given as harmonics, or a shaper with no more teeth than the pinion, whose flanks
+        touch along lines.
     """
     if machine.operating_pose == "none":
         return
@@ -395,10 +393,6 @@ def check_poses(machine: Transmission, pair: ToothPair, stiffness: MeshStiffness
     shaper, teeth = pair.shaper, pair.pinion_teeth
     if shaper is not None and shaper.teeth <= teeth:
         raise ConfigError("tooth_pair.shaper.teeth", shaper.teeth, f"more than {teeth} {STATIC}: {LINES}")
-    is_askew = pair.offset_mm != 0.0 or pair.shaft_angle_deg != 90.0
-    if is_askew and list(machine.face_gears) == [GEARS[1]]:
-        requirement = f"[{GEARS[0]}] {STATIC}, with an offset or another shaft angle than 90: {ALONE}"
-        raise ConfigError("transmission.face_gears", list(machine.face_gears), requirement)
 
 
 def check_posed_variants(machine: Transmission, tolerances: Tolerances | None, search: Search | None) -> None:

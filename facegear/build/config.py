@@ -25,11 +25,12 @@ from facegear.build.checks import (
     with_backlash,
 )
 from facegear.build.elastic_bodies import check_bodies, elastic_gears
+from facegear.build.lower_gear import check_gear_alone, check_lower_gear
 from facegear.build.notes import require_buildable
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.build.rolling import check_preloads
 from facegear.build.study_checks import check_search, check_studies, check_tolerances
-from facegear.build.tooth_pair import ToothPair, check_lower_gear, materials, pair_design
+from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.resolution import (
     along_the_ellipse,
     check_fillet,
@@ -136,11 +137,21 @@ class Config(Section):
         if self.modal.stiffness == "average":
             requirement = "local, where mesh_stiffness.mesh_law is load_dependent"
             raise ConfigError("modal.stiffness", "average", requirement)
-        causes = self.tolerances.causes if self.tolerances is not None else ()
-        keys = [key for cause in causes for key in cause.moves]
-        if self.search is not None or moves_pair(keys) or (self.tolerances and self.tolerances.tooth_contact):
+        if (
+            self.search is not None
+            or moves_pair(self._moved_keys)
+            or (self.tolerances and self.tolerances.tooth_contact)
+        ):
             requirement = f"constant_load, {CONTACT_ASKED}"
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", requirement)
+
+    @property
+    def _moved_keys(self) -> list[str]:
+        """Keys that samples or designs change."""
+        causes = self.tolerances.causes if self.tolerances is not None else ()
+        variables = self.search.variables if self.search is not None else ()
+        keys = [key for cause in causes for key in cause.moves]
+        return [*keys, *(key for variable in variables for key in variable.sets)]
 
     def _check_poses(self) -> None:
         """Refuse contact in the loaded position where the stiffness, the flanks, samples or designs do
@@ -314,8 +325,8 @@ class Config(Section):
                 )
             return
         check_preloads(machine)
-        if "lower" in machine.face_gears:
-            check_lower_gear(pair)
+        check_gear_alone(pair, machine.face_gears, self._moved_keys)
+        check_lower_gear(pair, machine.face_gears)
         self._check_duty_speeds()
         self._check_sharing_map(machine)
         check_positions(pair, machine)

@@ -4,11 +4,12 @@ No contact analysis is made, so that all of it takes about a second.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from facegear.build.lower_gear import other_lower_gear
 from facegear.build.lumped_model import machine
 from facegear.build.machine_layout import lumped_sections
 from facegear.build.strength import rating_request
@@ -80,6 +81,29 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
     if values["tooth_pair"]["pinion"] is None:
         return EarlyFindings((), (), ())
     design = pair_design(ToothPair.of_config(values["tooth_pair"]))
+    from_contact = values["mesh_stiffness"]["source"] != "harmonics"
+    found = _meshing_findings(design, from_contact)
+    machine_values = values["transmission"]
+    has_lower_gear = machine_values is not None and "lower" in machine_values["face_gears"]
+    lower = other_lower_gear(design) if has_lower_gear else None
+    if lower is not None:
+        of_lower = _meshing_findings(lower, from_contact)
+        failures, remarks, facts = (
+            tuple(f"lower gear: {line}" for line in lines)
+            for lines in (of_lower.failures, of_lower.remarks, of_lower.facts)
+        )
+        found = EarlyFindings(found.failures + failures, found.remarks + remarks, found.facts + facts)
+    if not found.facts:
+        return found
+    unrated, beyond = _rating(values, design)
+    return replace(found, failures=(*found.failures, *unrated), remarks=(*found.remarks, *beyond))
+
+
+def _meshing_findings(design: PairDesign, from_contact: bool) -> EarlyFindings:
+    """Return what geometry alone says of the teeth of one face gear; no facts where it cannot be computed.
+
+    `from_contact` says whether the mesh stiffness comes from contact.
+    """
     try:
         analysis = analyse(design, POSITIONS)
         stuck = jam(design, analysis)
@@ -90,7 +114,6 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
     if stuck is not None:
         failures.append(jam_in_words(analysis, stuck))
     elif analysis.interference is not None:
-        from_contact = values["mesh_stiffness"]["source"] != "harmonics"
         lines = failures if from_contact else remarks
         lines.append(_interference(analysis, from_contact))
     if analysis.contact_ratio < 1.0:
@@ -106,8 +129,6 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
                 f"tooth_pair: the path of contact, at gear radius {1e3 * path:.1f} mm, lies beside the face "
                 f"of {1e3 * gear.inner_radius:g} to {1e3 * gear.outer_radius:g} mm: flanks touch at its end"
             )
-    unrated, beyond = _rating(values, design)
-    failures, remarks = failures + unrated, remarks + beyond
     return EarlyFindings(tuple(failures), tuple(remarks), (f"geometry: {summary_in_words(analysis)}",))
 
 

@@ -1,6 +1,6 @@
 """The bodies of face gears that bend, from the config: their sections in SI units, and what these must be."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import replace
 from math import radians, tan
 from typing import Any, NoReturn
@@ -16,6 +16,8 @@ from facegear.parts import wheel
 from facegear.parts.wheel import Patch, require_meshable
 from facegear.schema.gear_body import BodySection
 from facegear.schema.transmission import Transmission
+from facegear.teeth.design import PairDesign
+from facegear.teeth.flank_shapes import Flanks, GearModifications
 from facegear.teeth.placement import pair_at
 from facegear.teeth.section_outline import tooth_fill
 
@@ -184,6 +186,41 @@ def fitted_shape(section: BodySection, teeth: ToothPair, side: str = "upper") ->
     from facegear.parts.tooth_layer import fitted_teeth  # loads finite elements
 
     return fitted_teeth(shape, pair_at(pair_design(teeth), side, "drive"))
+
+
+def body_key(section: BodySection, teeth: ToothPair, side: str) -> Hashable:
+    """Return a key of everything on which the solved body of a face gear depends.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section `body` of a face gear.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+    side : str
+        Which face gear: `lower` or `upper`.
+
+    Returns
+    -------
+    Hashable
+        Equal for gears that share one solution.
+    """
+    shape, patch = body_shape(section, teeth, side), contact_patch(section, teeth, side)
+    mounting = (shape.teeth, shape.material, shape.layer, patch, teeth.face_gear_teeth)
+    fitted_teeth = None
+    if section.teeth == "fitted":
+        fitted_teeth = _nominal_teeth(pair_at(pair_design(teeth), side, "drive"))
+    return (section, shape.corners.tobytes(), mounting, fitted_teeth)
+
+
+def _nominal_teeth(design: PairDesign) -> Hashable:
+    """Return a key of everything on which the stiffness of a face gear's fitted teeth depends; no
+    deviations.
+    """
+    gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
+    pinion = design.pinion.teeth, design.pinion.profile_shift, design.middle
+    axes = design.shaft_angle, design.offset, design.helix_angle, design.taper_angle
+    return (design.module, design.pressure_angles, axes, pinion, gear, design.shaper)
 
 
 def _polygon(section: BodySection, heights: TeethOnBody) -> tuple[Array, tuple[bool, ...]]:

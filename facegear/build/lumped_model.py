@@ -1,6 +1,5 @@
-"""The errors of single meshes and bodies that section `transmission` describes, in SI.
+"""Lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
 
-Lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
 `facegear.build.machine` adds the mesh stiffness as its stage has stored it.
 """
 
@@ -205,7 +204,7 @@ def machine(
     parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
     casing: Arrays | None = None,
-    flank_stiffness: tuple[tuple[Harmonics, Harmonics], ...] | None = None,
+    flank_stiffness: Mapping[str, tuple[Harmonics, Harmonics]] | None = None,
 ) -> Machine:
     """Build the lumped machine that a config describes: rigid gears, contact as assembled, no friction.
 
@@ -229,8 +228,8 @@ def machine(
         that is stiffness times compression.
     casing : mapping of arrays or None
         Arrays of stage casing; None to reduce the casing of the section here, where it has one.
-    flank_stiffness : tuple of pairs of Harmonics, or None
-        Stiffness of drive and back flank at each gear, N/m; None where all are `stiffness`.
+    flank_stiffness : mapping of str to pair of Harmonics, or None
+        Stiffness of drive and back flank by gear, N/m; None where all are `stiffness`.
 
     Returns
     -------
@@ -243,7 +242,7 @@ def machine(
         If the config asks for e(t) from contact and there is none.
     """
     shape, flaws = parts or lumped_parts(section, teeth, unloaded_error)
-    damping = section.damping
+    damping, flanks = section.damping, flank_stiffness or {}
     return Machine(
         layout=shape,
         torques=balanced_torques(shape, given_torques(section, shape), other_gear_torque(section)),
@@ -261,7 +260,7 @@ def machine(
         casing=machine_casing(section, shape, casing),
         tables=tables,
         excitations=excitations(section, shape),
-        flank_stiffness=flank_stiffness,
+        flank_stiffness=tuple(flanks[gear] for gear in shape.contact_gears) if flanks else None,
         has_phase_shifts=section.mesh_place == "moving",
     )
 

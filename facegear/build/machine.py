@@ -18,7 +18,7 @@ from facegear.lubrication.columns import EXCITATION_COLUMNS, EXCITATION_FLANK, E
 from facegear.machine.disturbances import MeshFriction
 from facegear.machine.elastic_gears import ElasticGears
 from facegear.machine.imperfections import from_arrays
-from facegear.machine.layout import Layout, Side
+from facegear.machine.layout import Layout
 from facegear.machine.machine import FlankTables, Machine
 from facegear.machine.mean_load import at_mean_load
 from facegear.machine.poses.fixed_point import posed_machine
@@ -77,13 +77,12 @@ def tables_of(law: Arrays) -> TablesOf:
     ]
 
     @cache
-    def of_sides(sides: tuple[Side, ...]) -> tuple[FlankTables, ...]:
-        """Return the tables of drive and back flank of gears on these sides; a gear alone has row 0."""
-        rows = [GEARS.index(side.value) if len(sides) > 1 else 0 for side in sides]
-        numbers = law["flank_variant"][rows]
+    def of_gears(names: tuple[str, ...]) -> tuple[FlankTables, ...]:
+        """Return the tables of drive and back flank of gears by the names of `Layout.contact_gears`."""
+        numbers = law["flank_variant"][[GEARS.index(name) for name in names]]
         return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
 
-    return lambda layout: of_sides(tuple(gear.side for gear in layout.gears))
+    return lambda layout: of_gears(layout.contact_gears)
 
 
 def _read_only(values: Array) -> Array:
@@ -127,12 +126,13 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     torques = np.abs(layout.mesh_torques(mean_equilibrium(at_rest(machine)).forces[0]))
     if layout.kind is None:
         return replace(machine, friction=MeshFriction(_series_of_meshes(table, layout, torques)))
-    of_gears = [GEARS[0] if len(layout.gears) == 1 else layout.gears[g].side.value for _, g in layout.meshes]
     drive, back = (
         np.concatenate(
             [
-                _series_of_meshes(_rows_of_flank(table, gear, flank), layout, np.array([torque]))
-                for gear, torque in zip(of_gears, torques.tolist(), strict=True)
+                _series_of_meshes(
+                    _rows_of_flank(table, layout.contact_gears[gear], flank), layout, torques[[mesh]]
+                )
+                for mesh, (_, gear) in enumerate(layout.meshes)
             ]
         )
         for flank in FLANKS
@@ -365,8 +365,7 @@ class MachineInputs:
         series, error, flanks = self.harmonics, self.unloaded_error, None
         if isinstance(series, pd.DataFrame):
             error = stiffness_source.unloaded_error(series)
-            gears = [side.value for side in Side if side.value in self.transmission.face_gears]
-            flanks = stiffness_source.flank_series(series, gears)
+            flanks = stiffness_source.flank_series(series)
             series = stiffness_source.series_of(series)
         lumped_machine = machine(
             self.transmission, self.teeth, series, error, casing=self.casing, flank_stiffness=flanks

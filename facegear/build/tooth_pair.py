@@ -11,9 +11,9 @@ from facegear.build.flanks import Teeth, check_flanks, common_flanks, difference
 from facegear.build.plans import contact_plan, mesh_sizes
 from facegear.contact.options import ContactPlan
 from facegear.contact.resolution import along_the_ellipse, estimated_memory
-from facegear.errors import ConfigError, GeometryError, NotConverged
+from facegear.errors import ConfigError, NotConverged
 from facegear.quantities import BODIES, Body
-from facegear.schema.base import Section, config_error, refuse, require_all
+from facegear.schema.base import Section, refuse, require_all
 from facegear.schema.contact import Contact, Mesh
 from facegear.schema.flanks import FlanksSection, Side, read_files
 from facegear.schema.gear_body import MaterialSection
@@ -38,7 +38,6 @@ from facegear.teeth.design import (
 )
 from facegear.teeth.flank_shapes import GearModifications, Relief
 from facegear.teeth.mesh_sizes import MeshSizes
-from facegear.teeth.placement import nominal_teeth, pair_at
 from facegear.teeth.surfaces import flank_face
 from facegear.teeth.validate import check
 
@@ -121,7 +120,7 @@ class ToothPair(Section):
             return
         if absent_bodies:
             refuse(absent_bodies[0], None, "given: pinion, face_gear and shaper go together")
-        nominal = _nominal(self)
+        nominal = nominal_design(self)
         try:
             check(nominal)
         except NotConverged as error:
@@ -148,7 +147,7 @@ def pair_design(section: ToothPair) -> PairDesign:
     ConfigError
         For a section without bodies.
     """
-    design = _nominal(section)
+    design = nominal_design(section)
     for body, flanks_section, teeth in _measured_bodies(section):
         flanks = common_flanks(flanks_section, flank_face(design, body), teeth)
         design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
@@ -180,7 +179,7 @@ def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
         For a section without bodies.
     """
     sides: tuple[Side, Side] = ("right", "left") if flank == "drive" else ("left", "right")
-    design = _nominal(section)
+    design = nominal_design(section)
     measured_bodies = {
         body: (measured_body, teeth) for body, measured_body, teeth in _measured_bodies(section)
     }
@@ -204,9 +203,23 @@ def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, 
             yield body, body_section.flanks, count
 
 
-def _nominal(section: ToothPair) -> PairDesign:
-    """Return the design of a pair in SI units with modified but not measured flanks; ConfigError without
-    bodies.
+def nominal_design(section: ToothPair) -> PairDesign:
+    """Return the design of a pair with modified but not measured flanks.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    PairDesign
+        In SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
     """
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
@@ -314,37 +327,6 @@ def pair(section: ToothPair) -> Pair:
         For a section without bodies.
     """
     return Pair(pair_design(section), materials(section))
-
-
-def check_lower_gear(section: ToothPair) -> None:
-    """Refuse a pair that no lower gear can have, where offset or shaft angle make it another gear.
-
-    Parameters
-    ----------
-    section : ToothPair
-        Section `tooth_pair` of a config with a lower gear.
-
-    Raises
-    ------
-    ConfigError
-        For the first value that the lower gear cannot have.
-    """
-    if section.pinion is None:
-        return
-    upper = _nominal(section)
-    lower = pair_at(upper, "lower", "drive")
-    if nominal_teeth(lower) == nominal_teeth(upper):
-        return
-    try:
-        check(lower)
-    except GeometryError as error:
-        requirement = config_error(error).requirement
-        raise ConfigError(
-            f"tooth_pair.{error.quantity}", error.value, f"{requirement}; this is the lower gear's limit"
-        ) from None
-    except NotConverged as error:
-        requirement = f"other teeth or radii for the lower gear: {error}"
-        raise ConfigError("tooth_pair.face_gear_teeth", section.face_gear_teeth, requirement) from None
 
 
 def _material(section: MaterialSection) -> Material:

@@ -16,9 +16,9 @@ from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
-from facegear.contact.summary import by_flank, by_torque, with_wrenches
+from facegear.contact.summary import by_flank, by_torque, join_flanks, with_wrenches
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
-from facegear.teeth.placement import FLANKS, GEARS, nominal_pairs, nominal_teeth
+from facegear.teeth.placement import nominal_pairs, nominal_teeth
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -169,13 +169,18 @@ class ContactAnalysis:
     results: list[tuple[list[LoadedPosition], FlankPressure]]
     numbers: Integers
 
+    @property
+    def is_spur(self) -> bool:
+        """Whether the teeth are spur ones, whose tables and arrays leave wrenches and further flanks out."""
+        return self.models[0].design.is_spur
+
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
         """The contact table of each pair, columns LTCA_COLUMNS, one row a torque and position; for
         teeth other than spur ones WRENCH_QUANTITIES follow.
         """
         tables = [ltca_table(*result) for result in self.results]
-        if self.models[0].design.is_spur:
+        if self.is_spur:
             return tables
         on = ["torque_n_m", "position"]
         return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
@@ -185,13 +190,9 @@ class ContactAnalysis:
         """The columns STIFFNESS_COLUMNS of `ltca` for the flanks whose design differs from the upper gear's
         drive flank, by gear and flank; without rows for spur teeth.
         """
-        parts = [self.ltca[0][list(STIFFNESS_COLUMNS)].iloc[:0].assign(gear="", flank="")]
-        for gear, numbers in zip(GEARS, self.numbers, strict=True):
-            for flank, number in zip(FLANKS, numbers, strict=True):
-                if number and not self.models[0].design.is_spur:
-                    rows = self.ltca[int(number)][list(STIFFNESS_COLUMNS)]
-                    parts.append(rows.assign(gear=gear, flank=flank))
-        return pd.concat(parts if len(parts) == 1 else parts[1:], ignore_index=True)
+        first, *further = (table[list(STIFFNESS_COLUMNS)] for table in self.ltca)
+        numbers = np.zeros_like(self.numbers) if self.is_spur else self.numbers
+        return join_flanks([first.iloc[:0], *further], numbers)[[*STIFFNESS_COLUMNS, "gear", "flank"]]
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
@@ -206,7 +207,7 @@ class ContactAnalysis:
         """Arrays of the pressure file: PRESSURE_ARRAYS of the upper gear's drive flank, with those of the
         other pairs for teeth other than spur ones, see `pattern.pressure_of_flanks`.
         """
-        if self.models[0].design.is_spur:
+        if self.is_spur:
             return self.pressure[0]
         arrays = {**self.pressure[0], "flank_variant": self.numbers}
         for number, (pressure, table) in enumerate(zip(self.pressure[1:], self.ltca[1:], strict=True), 1):
@@ -237,7 +238,7 @@ class ContactAnalysis:
         other than spur ones.
         """
         designs = [model.design for model in self.models]
-        if designs[0].is_spur:
+        if self.is_spur:
             return by_flank(self.by_torque, designs, self.numbers)
         tables = zip(self.by_torque, self.ltca, strict=True)
         return by_flank([with_wrenches(*of_pair) for of_pair in tables], designs, self.numbers)

@@ -328,7 +328,8 @@ def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> Non
     depth = sizes.fillet_depth or sizes.profile
     if plan.root_stress and depth > DEEPEST * radius:
         requirement = (
-            f"at most {1e3 * DEEPEST * radius:.3g} mm, {DEEPEST:g} times the smallest radius of the fillets: "
+            f"at most {1e3 * DEEPEST * radius:.3g} mm (`element depth below the fillets`), {DEEPEST:g} times "
+            "the smallest radius of the fillets: "
             f"it is too coarse to resolve their stress; a larger `{ROUNDINGS[sharpest]}` rounds them"
         )
         raise InvalidInput("element size", f"{1e3 * depth:.3g} mm below the fillets", requirement)

@@ -107,20 +107,39 @@ def by_flank(
     pd.DataFrame
         Columns BY_FLANK_COLUMNS, one row a flank and torque; further ones of the variants follow.
     """
-    parts = []
-    for (row, column), number in np.ndenumerate(numbers):
-        assembly = different[int(number)].assembly
-        flank_columns = {
-            "gear": GEARS[row],
-            "flank": FLANKS[column],
-            "offset_um": 1e6 * assembly.offset,
-            "shaft_angle_error_deg": np.degrees(assembly.shaft_angle_error),
-            "gear_axial_um": 1e6 * assembly.gear_axial,
-        }
-        parts.append(variants[int(number)].assign(**flank_columns))
-    table = pd.concat(parts, ignore_index=True)
+    with_errors = [
+        table.assign(
+            offset_um=1e6 * pair.assembly.offset,
+            shaft_angle_error_deg=np.degrees(pair.assembly.shaft_angle_error),
+            gear_axial_um=1e6 * pair.assembly.gear_axial,
+        )
+        for table, pair in zip(variants, different, strict=True)
+    ]
+    table = join_flanks(with_errors, numbers)
     further = [name for name in table.columns if name not in BY_FLANK_COLUMNS]
     return table[[*BY_FLANK_COLUMNS, *further]]
+
+
+def join_flanks(tables: Sequence[pd.DataFrame], numbers: Integers) -> pd.DataFrame:
+    """Join the tables of contacts to one of all gears and flanks.
+
+    Parameters
+    ----------
+    tables : Sequence[pd.DataFrame]
+        Table of each contact.
+    numbers : (gears, flanks) array of int
+        Number of the contact of each gear (upper, lower) and flank (drive, back).
+
+    Returns
+    -------
+    pd.DataFrame
+        Rows of each flank's contact, with columns `gear` and `flank` in front.
+    """
+    parts = [
+        tables[int(number)].assign(gear=GEARS[row], flank=FLANKS[column])
+        for (row, column), number in np.ndenumerate(numbers)
+    ]
+    return pd.concat(parts, ignore_index=True)[["gear", "flank", *tables[0].columns]]
 
 
 def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:

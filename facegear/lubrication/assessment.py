@@ -14,10 +14,10 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Integers, Mask
+from facegear.contact.summary import join_flanks
 from facegear.lubrication.columns import (
     BY_TORQUE_COLUMNS,
     EXCITATION_COLUMNS,
-    EXCITATION_FLANK,
     EXCITATION_TILTS,
     LIMIT_COLUMNS,
     MAP_COLUMNS,
@@ -32,7 +32,6 @@ from facegear.lubrication.loss import HatSlip, loss_factors
 from facegear.lubrication.pairs import LoadedPair
 from facegear.lubrication.request import Limits, Lubrication
 from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import FLANKS, GEARS
 
 
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:
@@ -137,12 +136,7 @@ def excitation_table(contacts: Sequence[RubbingContact], numbers: Integers) -> p
     tables = [contact.excitation_table() for contact in contacts]
     if contacts[0].design.is_spur:
         return tables[0]
-    frames = []
-    for (gear, flank), number in np.ndenumerate(numbers):
-        names = dict(zip(EXCITATION_FLANK, (GEARS[gear], FLANKS[flank]), strict=True))
-        table = tables[number].assign(**names)
-        frames.append(table[[*EXCITATION_FLANK, *tables[number].columns]])
-    return pd.concat(frames, ignore_index=True)
+    return join_flanks(tables, numbers)
 
 
 RPM = pi / 30

@@ -232,16 +232,12 @@ class Layout:
 
     @cached_property
     def pinion_arm(self) -> float:
-        """Torque on a pinion over the force of its drive flank that balances it, m: the base radius of spur
-        teeth.
-        """
+        """Torque on a pinion over the force of its drive flank, m: the base radius of spur teeth."""
         return self.kinematics.arm(self.pinion_radius, self.pressure_angle)
 
     @cached_property
     def gear_arm(self) -> float:
-        """Torque on a face gear over the force of a drive flank that balances it, m: the base radius of spur
-        teeth.
-        """
+        """Torque on a face gear over the force of a drive flank, m: the base radius of spur teeth."""
         return self.kinematics.arm(self.gear_radius, self.pressure_angle)
 
     @cached_property
@@ -337,9 +333,7 @@ class Layout:
 
     @cached_property
     def first_tilts(self) -> dict[int, int]:
-        """Index of the degree of freedom tilt_x of every gear that may tilt, by the gear's number; tilt_y
-        is the next.
-        """
+        """Index of tilt_x of every gear that may tilt, by the gear's number; tilt_y is the next."""
         return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
 
     @cached_property
@@ -347,6 +341,11 @@ class Layout:
         """Number of the gear that gives the power out, in `gears`: the upper one, else the only one."""
         sides = [gear.side for gear in self.gears]
         return sides.index(Side.UPPER) if Side.UPPER in sides else 0
+
+    @cached_property
+    def contact_gears(self) -> tuple[str, ...]:
+        """Gear whose contact each gear has: its own, of a gear alone that of an upper one."""
+        return tuple(g.side.value if len(self.gears) > 1 else Side.UPPER.value for g in self.gears)
 
     @cached_property
     def dof(self) -> int:

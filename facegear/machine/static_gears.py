@@ -20,7 +20,7 @@ from facegear.machine.machine import Machine
 from facegear.parts.reduced_body import ReducedBody
 
 RANK_TOLERANCE = 1e-10
-"""Part of the largest singular value below which a direction of the flanks is that of not_round."""
+"""Part of the largest singular value below which a direction of the flanks follows from the other ones."""
 
 
 def at_rest(machine: Machine) -> Machine:
@@ -162,7 +162,7 @@ def _shapes(compliances: Array) -> Array:
     sizes, vectors = np.linalg.eigh(compliances)
     shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
     not_round = np.delete(np.arange(compliances.shape[1]), ROUND)
-    at = np.ix_([0], not_round, not_round)
+    at = np.ix_(np.zeros(1, dtype=int), not_round, not_round)
     sizes, vectors = np.linalg.eigh(compliances[at])
     shapes[0] = 0.0
     shapes[at] = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]

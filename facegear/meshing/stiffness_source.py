@@ -1,6 +1,6 @@
 """Mesh stiffness k(t) from the contact analysis or from given harmonics, with its tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +13,10 @@ from facegear.meshing.stiffness_curve import LoadTable, load_table, peak_to_peak
 from facegear.meshing.stiffness_request import StiffnessRequest
 from facegear.number_format import format_number
 
-FlankSeries = tuple[tuple[Harmonics, Harmonics], ...]
-"""Stiffness series of drive and back flank at each gear of a machine, N/m."""
+GEARS = ("lower", "upper")
+"""Face gears of which a harmonics table may have the flanks."""
+FlankSeries = dict[str, tuple[Harmonics, Harmonics]]
+"""Stiffness series of drive and back flank by gear, N/m."""
 HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
 """First columns of harmonics_table()."""
 
@@ -324,20 +326,18 @@ def with_flanks(table: pd.DataFrame, series_by_flank: Mapping[tuple[str, str], H
     return table.assign(**columns)
 
 
-def flank_series(table: pd.DataFrame, gears: Sequence[str]) -> FlankSeries | None:
-    """Return the stiffness series of the flanks at each gear from a harmonics table.
+def flank_series(table: pd.DataFrame) -> FlankSeries | None:
+    """Return the stiffness series of the flanks of both gears from a harmonics table.
 
     Parameters
     ----------
     table : pd.DataFrame
         Table with columns of with_flanks(), if any.
-    gears : Sequence of str
-        `lower` and `upper`; a gear alone has the flanks of the upper one.
 
     Returns
     -------
-    tuple of pairs of Harmonics, or None
-        Drive and back flank of each gear, N/m; None where all flanks are alike.
+    dict of str to pair of Harmonics, or None
+        Drive and back flank of each of GEARS, N/m; None where all flanks are alike.
     """
     flank_columns = [column for column in table if column.endswith("_cos_n_per_m")]
     if not flank_columns:
@@ -349,8 +349,7 @@ def flank_series(table: pd.DataFrame, gears: Sequence[str]) -> FlankSeries | Non
             return series_of(table)
         return series_of(table[["order", *names]].set_axis(["order", *HARMONICS_COLUMNS[1:3]], axis=1))
 
-    names = [gear if len(gears) > 1 else "upper" for gear in gears]
-    return tuple((series(gear, "drive"), series(gear, "back")) for gear in names)
+    return {gear: (series(gear, "drive"), series(gear, "back")) for gear in GEARS}
 
 
 def stiffness_from_contact(
@@ -429,7 +428,7 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     harmonics = harmonics_table(series, None)
     if request.coast_series is not None:
         coast = request.coast_series.scale_variation(request.variation).truncate(request.order)
-        harmonics = with_flanks(harmonics, dict.fromkeys([("lower", "back"), ("upper", "back")], coast))
+        harmonics = with_flanks(harmonics, {(gear, "back"): coast for gear in GEARS})
     return Stiffness(
         curve_table(positions, whole(positions), series),
         harmonics,

@@ -172,11 +172,15 @@ class Draft:
         return resolved_values(config_of(values))
 
     def _spring_values(self, radial: float) -> dict[str, float]:
-        """Return bearing stiffness along x, y and z, N/m: radial along x and y, along z the wish for it,
-        else the same.
+        """Return bearing stiffness along x, y and z, N/m: radial along x and y, along z the wish for it.
+
+        Without a wish it is the same for spur teeth, and STIFF times that of a mesh for others, which push
+        the pinion along its axis.
         """
         axial = self.wishes.axial_bearing_n_per_m
-        return {"x": radial, "y": radial, "z": radial if axial is None else axial}
+        if axial is None:
+            axial = radial if self.teeth.design.is_spur else round_stiffness(STIFF * self.stiffness)
+        return {"x": radial, "y": radial, "z": axial}
 
     def text(self, bearings: Bearings, loads: tuple[float, float]) -> str:
         """Return the config as YAML text, each choice with a comment that gives its reason.

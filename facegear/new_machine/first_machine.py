@@ -61,18 +61,8 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     iterator of str
         One line of text for each estimate, with units.
     """
-    wishes = draft.wishes
     yield _power_line(draft)
-    if wishes.idlers:
-        low, high = split.idlers
-        # A single idler shares its load with none.
-        idlers = f", {low:.3g} to {high:.3g} of idlers" if np.isfinite(low) else ""
-        yield (
-            f"K_gamma {split.inputs:.3g} of inputs{idlers}; largest load of a "
-            f"path over the mean of its group {split.group_ratio:.3g} (estimated with the errors written)"
-        )
-        if split.excess > 1.0:
-            yield _poor_split(draft, bearings)
+    yield from _split_lines(draft, bearings, split)
     safeties = estimate_safeties(draft, mesh_torque)
     yield (
         f"safety of the pinion against bending {safeties.bending:.3g}, against pitting "
@@ -84,13 +74,18 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     yield _resonances(draft, bearings)
 
 
-def other_teeth_lines(draft: Draft, mesh_torque: float) -> Iterator[str]:
-    """Yield lines of what is known of a machine whose teeth are not spur: power, forces, limits of the face.
+def other_teeth_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: float) -> Iterator[str]:
+    """Yield lines of estimates of a machine whose teeth are not spur: power, forces and limits of the face,
+    load sharing and resonances.
 
     Parameters
     ----------
     draft : Draft
         The machine without bearings.
+    bearings : Bearings
+        Radial stiffness of its bearings, N/m.
+    split : Split
+        How the machine with these bearings shares its load.
     mesh_torque : float
         Torque on the pinion by the most loaded mesh, N m.
 
@@ -111,9 +106,24 @@ def other_teeth_lines(draft: Draft, mesh_torque: float) -> Iterator[str]:
             f"at {_text(mesh_torque)} N m a mesh {_text(axial)} N outwards along the pinion's axis, "
             f"{_text(upward)} N away from the gear"
         )
+    yield from _split_lines(draft, bearings, split)
+    yield _resonances(draft, bearings)
+    yield "not estimated for teeth that are not spur: safety, which the report computes from contact"
+
+
+def _split_lines(draft: Draft, bearings: Bearings, split: Split) -> Iterator[str]:
+    """Yield a line of load sharing and, where it is poor, what would help; none without idlers."""
+    if not draft.wishes.idlers:
+        return
+    low, high = split.idlers
+    # A single idler shares its load with none.
+    idlers = f", {low:.3g} to {high:.3g} of idlers" if np.isfinite(low) else ""
     yield (
-        "not estimated for teeth that are not spur: load sharing, safety and resonances; bearings are stiff"
+        f"K_gamma {split.inputs:.3g} of inputs{idlers}; largest load of a "
+        f"path over the mean of its group {split.group_ratio:.3g} (estimated with the errors written)"
     )
+    if split.excess > 1.0:
+        yield _poor_split(draft, bearings)
 
 
 def _power_line(draft: Draft) -> str:
@@ -338,10 +348,9 @@ def first_machine(wishes: MachineWishes) -> FirstMachine:
     require_wishes(wishes)
     require_room(wishes, choose_teeth(wishes.teeth).design)
     if not is_spur(wishes):
-        draft, loads = Draft(wishes), _torques_at_rest(wishes)
-        return FirstMachine(
-            draft.text(draft.stiff_bearings(), loads), tuple(other_teeth_lines(draft, loads[1]))
-        )
+        other = _machine(Draft(wishes))
+        expectations = other_teeth_lines(other.draft, other.bearings, other.split, other.loads[1])
+        return FirstMachine(other.draft.text(other.bearings, other.loads), tuple(expectations))
     best = _machine(Draft(wishes))
     if wishes.shaper_teeth is None:
         for more_shaper_teeth in MORE_SHAPER_TEETH[1:]:
@@ -373,17 +382,6 @@ class _Machine:
         """
         safeties = estimate_safeties(self.draft, self.loads[1])
         return safeties.spare, safeties.spare_pitting
-
-
-def _torques_at_rest(wishes: MachineWishes) -> tuple[float, float]:
-    """Return the smallest and largest torque on a pinion by a mesh (N m) if paths share their load evenly: an
-    input between two gears gives half of it to each, and idlers lead on what the lower gear gets.
-    """
-    if not wishes.idlers:
-        return wishes.torque_n_m, wishes.torque_n_m
-    half = 0.5 * wishes.torque_n_m
-    torques = half, half * wishes.pinions / wishes.idlers
-    return min(torques), max(torques)
 
 
 def _machine(draft: Draft) -> _Machine:

@@ -11,6 +11,7 @@ from facegear.parts.modes import HARMONICS, OrderModes, phase_factors, resonant_
 from facegear.parts.reduced_body import RimForces, flank_influence
 from facegear.parts.section import section_properties
 from facegear.parts.wheel import Patch
+from facegear.teeth.placement import FLANKS
 
 RPM = 30.0 / np.pi
 """rpm for 1 rad/s."""
@@ -18,8 +19,6 @@ DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
 """Number of orders, from 0, whose shapes are stored."""
-FLANKS = ("drive", "back")
-"""Names of the flanks of a mesh in tables."""
 COUPLINGS = ("hub_axial_sqrt_kg", "hub_spin_sqrt_kg_m", "hub_sideways_sqrt_kg", "hub_tilt_sqrt_kg_m")
 """Columns of Q with the hub's motion along the axis, round it, sideways, and tilting about a diameter at
 height 0."""

@@ -30,6 +30,8 @@ DAMPING_RATIO = 0.05
 ROUGHNESS_UM = 0.4
 """Usual roughness Ra of a ground flank."""
 
+HALF_TURN = 180.0
+"""Angle, deg, beyond which no number of a key in degrees was meant in rad."""
 OTHER_UNITS: Mapping[str, Sequence[tuple[str, float]]] = {
     "_n_s_per_m": (("kN s/m", 1e3), ("N s/mm", 1e3)),
     "_n_m_per_rad": (("kN m/rad", 1e3),),
@@ -122,9 +124,12 @@ def unit_suggestion(key: str, value: float, low: float | None, high: float | Non
     str
         Text such as ``; is it in m?``, empty if no other unit fits.
     """
+    suffix = _suffix(key, OTHER_UNITS)
+    if suffix == "_deg" and high is None:
+        high = HALF_TURN
     fitting = [
         (value * factor, unit)
-        for unit, factor in OTHER_UNITS.get(_suffix(key, OTHER_UNITS), ())
+        for unit, factor in OTHER_UNITS.get(suffix, ())
         if value > 0.0 and (low is None or value * factor >= low) and (high is None or value * factor <= high)
     ]
     if not fitting:

@@ -192,26 +192,8 @@ def contacts_of(
     dict[str, FlankContact]
         Contacts by flank.
     """
-    gear = gear_of(mesh, gears)
+    gear = gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
     return {flank: contacts[gear, flank] for flank in FLANKS}
-
-
-def gear_of(mesh: str, gears: Sequence[str]) -> str:
-    """Return the gear of a mesh by the name under which contact knows it.
-
-    Parameters
-    ----------
-    mesh : str
-        Name of the mesh, `pinion/gear`.
-    gears : Sequence[str]
-        Gears of the machine.
-
-    Returns
-    -------
-    str
-        The mesh's own gear; of a machine with a single gear that gear.
-    """
-    return gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
 
 
 def largest_pressure(loads: Iterable[tuple[FlankContact, float]]) -> float:

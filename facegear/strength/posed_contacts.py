@@ -15,11 +15,11 @@ from facegear.arrays import AnyArray, Array, Arrays
 from facegear.machine.poses.surface import PoseSurface
 from facegear.quantities import BODIES
 from facegear.strength.contact_pressure import contact_pressure
-from facegear.strength.flank_contacts import FlankContact, contacts_of, gear_of
+from facegear.strength.flank_contacts import FlankContact, contacts_of
 from facegear.strength.materials import FlankDuty
 from facegear.strength.rating import LoadStresses
 from facegear.strength.root_stress import RootStress
-from facegear.teeth.placement import FLANKS, GEARS
+from facegear.teeth.placement import FLANKS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -198,8 +198,6 @@ class PosedContacts:
         Load of each mesh at rest, N m on the pinion.
     surface
         Response surface that tells how another pose changes the stress.
-    gears
-        Gears of the machine; one alone is the upper one, whatever the machine calls it.
     """
 
     contacts: Mapping[str, Mapping[str, FlankContact]]
@@ -207,7 +205,6 @@ class PosedContacts:
     loaded_flanks: Mapping[str, str]
     torque: Mapping[str, float]
     surface: PoseSurface
-    gears: Sequence[str] = GEARS
 
     def met_by(self, duty: FlankDuty) -> list[tuple[str, str]]:
         """Return the mesh and flank of the contacts of a rated flank.
@@ -284,7 +281,7 @@ class PosedContacts:
                 torque, contact = duty.torque[rows], self.contacts[mesh][flank]
                 ends = self.contact_poses[mesh, flank], contact_poses[int(number), mesh, flank]
                 tensions = np.array([contact.tension[duty.gear](value) for value in torque])
-                surface = self.surface.of_flank(gear_of(mesh, self.gears), flank)
+                surface = self.surface.of_flank(mesh.rsplit("/", 1)[1], flank)
                 tensions = tensions * stress_ratio(surface, ROOTS[duty.gear], *ends)(torque)
                 pressures = np.array([contact.pressure.at(value) for value in torque])
                 pressures = pressures * stress_ratio(surface, PRESSURE, *ends)(torque)
@@ -416,10 +413,8 @@ def posed_contacts(
                 float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row])
             )
         rest = ContactPose(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
-        flank_surface, end = (
-            surface.of_flank(gear_of(name, gears), other_flank),
-            contact_poses[name, other_flank],
-        )
+        flank_surface = surface.of_flank(name.rsplit("/", 1)[1], other_flank)
+        end = contact_poses[name, other_flank]
         factors = {stress: stress_ratio(flank_surface, stress, rest, end) for stress in STRESSES}
         at_rest = contacts_of(name, assembled_contacts, gears)[other_flank]
         contacts[name] = {
@@ -427,4 +422,4 @@ def posed_contacts(
             other_flank: scale_contact(at_rest, factors),
         }
         loaded_flanks[name], torque[name] = loaded_flank, float(arrays["mesh_torque_n_m"][row])
-    return PosedContacts(contacts, contact_poses, loaded_flanks, torque, surface, gears)
+    return PosedContacts(contacts, contact_poses, loaded_flanks, torque, surface)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
+from facegear.contact.summary import join_flanks
 from facegear.quantities import BODIES
 from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
@@ -107,11 +108,7 @@ def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: I
         Columns as ROOT_STRESS_BY_FLANK_COLUMNS.
     """
     summaries = [root_tables(roots)["summary"] for roots in variants]
-    parts = [
-        summaries[int(number)].assign(gear=GEARS[row], flank=FLANKS[column])
-        for (row, column), number in np.ndenumerate(flank_variant)
-    ]
-    return pd.concat(parts, ignore_index=True)[list(ROOT_STRESS_BY_FLANK_COLUMNS)]
+    return join_flanks(summaries, flank_variant)[list(ROOT_STRESS_BY_FLANK_COLUMNS)]
 
 
 def root_arrays(

@@ -193,8 +193,7 @@ def pair_of_meshes(pairs: FlankPairs, layout: Layout, meshes: Integers, on_back:
     Pair
         Pair of the n flanks.
     """
-    rows = [GEARS.index(gear.side.value) if len(layout.gears) > 1 else 0 for gear in layout.gears]
-    gears = np.array([rows[g] for _, g in layout.meshes])
+    gears = np.array([GEARS.index(layout.contact_gears[g]) for _, g in layout.meshes])
     return pairs.of_meshes(gears[meshes], on_back.astype(int))
 
 

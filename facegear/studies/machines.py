@@ -365,8 +365,7 @@ def judge(
         require_buildable(section, mesh.numbers, parts)
         require_room(section, mesh.numbers, parts)
         tables = None if mesh.tables is None else mesh.tables(parts[0])
-        gears = [gear.side.value for gear in parts[0].gears]
-        flanks = None if mesh.harmonics is None else flank_series(mesh.harmonics, gears)
+        flanks = None if mesh.harmonics is None else flank_series(mesh.harmonics)
         lumped_machine = machine(
             section,
             mesh.numbers,

@@ -14,7 +14,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.build.checks import geometric_backlash
-from facegear.build.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears, fitted_shape
+from facegear.build.elastic_bodies import body_key, check_bodies, contact_patch, elastic_gears, fitted_shape
 from facegear.build.machine import TablesOf
 from facegear.build.plans import contact_plan, stiffness_request
 from facegear.build.tooth_numbers import ToothNumbers
@@ -46,8 +46,7 @@ from facegear.strength.contact_pressure import FlankAnswers, PairAnswers, contac
 from facegear.strength.passage import PassingTension
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
 from facegear.teeth.design import PairDesign
-from facegear.teeth.flank_shapes import Flanks, GearModifications
-from facegear.teeth.placement import GEARS, nominal_pairs, nominal_teeth, pair_at
+from facegear.teeth.placement import GEARS, nominal_pairs, nominal_teeth
 
 Values = Mapping[str, Any]
 GearFlanks = Mapping[str, Sequence["GearFlank"]]
@@ -119,7 +118,7 @@ class PairExcitation:
         if self.answers is None:
             return {}
         answers, flanks = self.answers, self.answers.flanks
-        rows = [GEARS.index(gear.side.value) if len(layout.gears) > 1 else 0 for gear in layout.gears]
+        rows = [GEARS.index(gear) for gear in layout.contact_gears]
         numbers = answers.numbers[[rows[gear] for _, gear in layout.meshes]].T.ravel()
         forces = [loads.largest[numbers == number].max(initial=0.0) for number in range(len(flanks))]
         # without any load the first contact stands for all
@@ -369,7 +368,7 @@ class VariedBodies:
         """
         bodies = cls(ToothPair.of_config(pair))
         for side, section in elastic_gears(Transmission.of_config(transmission)).items():
-            bodies.cache[_body_key(section, bodies.pair, side)] = ReducedBody.of_arrays(arrays, side)
+            bodies.cache[body_key(section, bodies.pair, side)] = ReducedBody.of_arrays(arrays, side)
         return bodies
 
     def add_bodies(self, machine: Machine, section: Transmission, values: Values) -> Machine:
@@ -413,32 +412,12 @@ class VariedBodies:
 
         With CACHED_BODIES in the cache the oldest one is dropped.
         """
-        key = _body_key(section, pair, side)
+        key = body_key(section, pair, side)
         if key not in self.cache:
             if len(self.cache) >= CACHED_BODIES:
                 del self.cache[next(iter(self.cache))]
             self.cache[key] = _solve_body(section, pair, side)
         return self.cache[key]
-
-
-def _body_key(section: BodySection, pair: ToothPair, side: str) -> Hashable:
-    """Return a key of everything on which a reduced face gear depends, for the cache of bodies."""
-    shape, patch = body_shape(section, pair, side), contact_patch(section, pair, side)
-    mounting = (shape.teeth, shape.material, shape.layer, patch, pair.face_gear_teeth)
-    fitted_teeth = None
-    if section.teeth == "fitted":
-        fitted_teeth = _nominal_teeth(pair_at(pair_design(pair), side, "drive"))
-    return (section, shape.corners.tobytes(), mounting, fitted_teeth)
-
-
-def _nominal_teeth(design: PairDesign) -> Hashable:
-    """Return a key of everything on which the stiffness of a face gear's fitted teeth depends; no
-    deviations.
-    """
-    gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
-    pinion = design.pinion.teeth, design.pinion.profile_shift, design.middle
-    axes = design.shaft_angle, design.offset, design.helix_angle, design.taper_angle
-    return (design.module, design.pressure_angles, axes, pinion, gear, design.shaper)
 
 
 def _solve_body(section: BodySection, pair: ToothPair, side: str) -> ReducedBody:

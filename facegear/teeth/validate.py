@@ -98,7 +98,7 @@ def _end_in_words(design: PairDesign, y: float) -> str:
     """Return at which end of a tapered face a place (m) is, in words; nothing for the middle."""
     if y == design.middle:
         return ""
-    return f" at the {'inner' if y < design.middle else 'outer'} end; a smaller taper_angle_deg helps"
+    return f" at the {'inner' if y < design.middle else 'outer'} end; a taper_angle_deg nearer to 0 helps"
 
 
 def _check_rack(design: PairDesign) -> None:
@@ -142,7 +142,11 @@ def _check_section(design: PairDesign, y: float) -> None:
         )
     largest = part.dedendum - part.rack_tip_radius / cos(design.taper_angle) - growth
     if part.profile_shift >= largest - 1e-3 * m:
-        _refuse("pinion.profile_shift_modules", part.profile_shift / m, f"less than {largest / m:.4f}{end}")
+        _refuse(
+            "pinion.profile_shift_modules",
+            part.profile_shift / m,
+            f"less than {largest / m:.4f}: the rack's tip does not reach below the pitch circle{end}",
+        )
     start = float(design.pinion_base_radius * np.hypot(1, pinion.junction_roll(design, y)))
     tip = float(pinion.tip_radius(design, y))
     if tip - part.tip_chamfer <= start + 0.1 * m:
@@ -365,6 +369,9 @@ def _check_width(design: PairDesign) -> None:
     if width < min_width:
         requirement = f"at least {1e3 * min_width:.3f}, half the gear's face"
         _refuse("pinion.width_mm", 1e3 * width, requirement)
+    if max_width <= min_width:
+        requirement = f"more than {1e3 * width / 2:.3f}: the pinion reaches the gear's axis"
+        _refuse("pinion.middle_mm", 1e3 * design.middle, requirement)
     if width >= max_width:
         _refuse(
             "pinion.width_mm", 1e3 * width, f"less than {1e3 * max_width:.3f}: it reaches the gear's axis"

@@ -68,6 +68,7 @@ def test_fillets_too_sharp_to_be_rated_are_refused_with_the_key_that_rounds_them
     assert main(("check", str(path))) == 1
     message = capsys.readouterr().err
     assert "it is too coarse to resolve their stress; a larger tooth_pair.shaper.tip_rounding" in message
+    assert " mm (fillet_depth_mm), 2 times the smallest radius of the fillets" in message
     assert message.count("\n") == 1
 
 

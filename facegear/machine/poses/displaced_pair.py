@@ -13,16 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame
+from facegear.machine.poses.mesh_poses import middle_place, to_mesh_frame, to_pinion
 from facegear.teeth.conjugate import PairNumbers, exact_contact, pitch_roll
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.family_contact import contact_line
 from facegear.teeth.placement import FLANKS, RigidMotion, mirror_design, pair_at, pinion_angle, rotation
 from facegear.teeth.tooth_family import SIDES, RelativeMotion
 from facegear.teeth.unloaded_contact import unloaded_contact
-
-SQUARE_AXES = RelativeMotion(1.0)
-"""Axes that cross at a right angle; the ratio of the motion does not matter."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +46,7 @@ class Pose:
     behind: float
 
 
-def pose_of(
-    pinion: RigidMotion, gear: RigidMotion, middle: float, axes: RelativeMotion = SQUARE_AXES
-) -> Pose:
+def pose_of(pinion: RigidMotion, gear: RigidMotion, middle: float, axes: RelativeMotion) -> Pose:
     """Return the pose of a pinion and a gear that have moved in the mesh frame from their nominal places.
 
     It is exact: the motion of the pinion relative to the gear is split into a turn of the gear, an
@@ -66,7 +61,7 @@ def pose_of(
     middle : float
         Position of the middle of the pinion's face on its axis, m.
     axes : RelativeMotion
-        Shaft angle and offset of the nominal axes; at a right angle and crossing by default.
+        Shaft angle and offset of the nominal axes.
 
     Returns
     -------
@@ -342,9 +337,8 @@ def _turns(
     gears' z.
     """
     axes, to_mesh = design.family.motion, to_mesh_frame(mesh.sign)
-    cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
     of_pinion = axes.basis.T @ to_mesh
-    of_gear = to_mesh @ np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
+    of_gear = to_mesh @ to_pinion(mesh.azimuth)
     pinion_turn = np.array(pinion.turn) * [1.0, 1.0, -1.0]
     gear_turn = np.array(gear.turn) * [1.0, 1.0, mesh.sign]
     middle, centre = middle_place(design.middle, axes), np.array([0.0, 0.0, -mesh.tilt_height])

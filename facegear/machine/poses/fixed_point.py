@@ -33,7 +33,7 @@ from facegear.machine.poses.surface import STIFFNESS, PoseSurface
 from facegear.machine.static_gears import at_rest as static
 from facegear.machine.statics import Equilibria, mean_equilibrium
 from facegear.teeth.design import PairDesign
-from facegear.teeth.placement import FLANKS, GEARS, pair_at
+from facegear.teeth.placement import FLANKS, pair_at
 
 TOLERANCE = 1e-6
 """Largest change of a mesh force in the last step, over the largest force."""
@@ -414,8 +414,7 @@ def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
     layout = result.machine.layout
     for mesh, force in enumerate(result.forces.tolist()):
         back, torque = force < 0.0, float(result.torque[mesh])
-        # a gear alone has the bodies of the upper one
-        gear = layout.gears[layout.meshes[mesh][1]].side.value if len(layout.gears) > 1 else GEARS[0]
+        gear = layout.contact_gears[layout.meshes[mesh][1]]
         errors = result.poses.errors(mesh, back)
         if not design.is_spur:
             errors = replace(errors, pinion_axial=float(result.poses.outward[mesh]))

@@ -109,6 +109,23 @@ def to_mesh_frame(sign: float) -> Array:
     return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
 
 
+def to_pinion(angle: float) -> Array:
+    """Return the matrix from x, y, z of a gear to tangent, gear axis and outwards at a pinion.
+
+    Parameters
+    ----------
+    angle : float
+        Distribution angle of the pinion, rad.
+
+    Returns
+    -------
+    (3, 3) array
+        Dimensionless, a rotation in units of 1.
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
+
+
 def mesh_poses(linear: LinearModel, layout: Layout, middle: float, displacements: Array) -> MeshPoses:
     """Return the poses at displacements of the linear model's coordinates.
 
@@ -169,13 +186,13 @@ def pose_rows(linear: LinearModel, layout: Layout, middle: float, with_pinions: 
         rows[:, mesh, pinion : pinion + 3] = parts[g].pinion_shifts
         if tilts_of_pinions[i]:
             rows[:, mesh, tilts_of_pinions[i]] = parts[g].pinion_tilts
-        to_pinion = _to_pinion(layout.angles[i])
-        rows[:, mesh, gear : gear + 3] = parts[g].gear_shifts @ to_pinion
+        at_pinion = to_pinion(layout.angles[i])
+        rows[:, mesh, gear : gear + 3] = parts[g].gear_shifts @ at_pinion
         if g in layout.first_tilts:
             tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
-            rows[:, mesh, tilts] = parts[g].gear_turns @ to_pinion[:, :2]
+            rows[:, mesh, tilts] = parts[g].gear_turns @ at_pinion[:, :2]
     if linear.seat_tilts is not None:
-        _add_seat_tilts(linear, layout, middle, rows, with_pinions)
+        _add_seat_tilts(linear, layout, parts, rows, with_pinions)
     if linear.slopes is not None and layout.kind is not None:
         for mesh, (_, g) in enumerate(layout.meshes):
             rows[:, mesh] += _rim_parts(layout, layout.kind, g, middle) @ linear.slopes[:, mesh]
@@ -267,23 +284,17 @@ class _GearParts:
         )
 
 
-def _to_pinion(angle: float) -> Array:
-    """Return the matrix (3, 3) from x, y, z of a gear to tangent, gear axis and outwards at a pinion, whose
-    distribution angle is `angle`, rad.
-    """
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
-
-
 def _add_seat_tilts(
-    linear: LinearModel, layout: Layout, middle: float, rows: Array, with_pinions: bool
+    linear: LinearModel, layout: Layout, parts: list[_GearParts], rows: Array, with_pinions: bool
 ) -> None:
-    """Add to `rows` (4, meshes, n) what bodies that tilt with their seats on a casing add, in place."""
+    """Add to `rows` (4, meshes, n) what bodies that tilt with their seats on a casing add, in place.
+
+    parts: of each gear.
+    """
     assert linear.seat_tilts is not None
     tilts = linear.over_all(linear.seat_tilts)
-    parts = [_GearParts.of_gear(layout, gear, middle) for gear in range(len(layout.gears))]
     for mesh, (i, g) in enumerate(layout.meshes):
-        gear_tilts = parts[g].gear_turns @ _to_pinion(layout.angles[i])[:, :2]
+        gear_tilts = parts[g].gear_turns @ to_pinion(layout.angles[i])[:, :2]
         rows[:, mesh] += gear_tilts @ tilts[len(layout.pinions) + g]
         if with_pinions:
             rows[:, mesh] += parts[g].pinion_tilts @ tilts[i]

@@ -221,13 +221,15 @@ def margin_text(meshes: pd.DataFrame) -> str:
         Parts joined by semicolons.
     """
     edges = {**ENDS, **TIPS}
-    meshes_of_edge = {
-        words: meshes.loc[meshes[column] == 0.0, "mesh"].to_list() for column, words in edges.items()
-    }
-    meshes_of_edge = {words: names for words, names in meshes_of_edge.items() if names}
+    edges_of_meshes: dict[str, list[str]] = {}
+    for column, words in edges.items():
+        names = meshes.loc[meshes[column] == 0.0, "mesh"].to_list()
+        if names:
+            mesh_names = ", ".join(names) if len(names) < len(meshes) else "every mesh"
+            edges_of_meshes.setdefault(mesh_names, []).append(words)
     texts = [
-        f"the pattern reaches {words} in {', '.join(names) if len(names) < len(meshes) else 'every mesh'}"
-        for words, names in meshes_of_edge.items()
+        f"the pattern reaches {', '.join(edge_names)} in {mesh_names}"
+        for mesh_names, edge_names in edges_of_meshes.items()
     ]
     free = meshes[list(ENDS)].where(meshes[list(ENDS)] > 0.0)
     if free.notna().to_numpy().any():

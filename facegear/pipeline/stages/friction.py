@@ -70,8 +70,7 @@ def lubrication(
         Tables `by_torque`, `positions`, `limits` and `map` (over torque and speed), described by
         `FrictionResult`, of the upper gear's drive flank. Table `excitation`: force and moments of friction
         over the mesh force by torque and position, with which the motion is excited, of all flanks for
-        teeth other than spur ones. Arrays `local` (LOCAL_ARRAYS): quantities
-        of every loaded plane.
+        teeth other than spur ones. Arrays `local` (LOCAL_ARRAYS): quantities of every loaded plane.
 
     Raises
     ------

@@ -1,15 +1,14 @@
 """Stages of face gears that bend: their bodies, and the waves of the turning machine."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from facegear.build.elastic_bodies import contact_patch, elastic_gears, fitted_shape
+from facegear.build.elastic_bodies import body_key, contact_patch, elastic_gears, fitted_shape
 from facegear.build.lumped_model import given_torques
 from facegear.build.machine_layout import layout
-from facegear.build.teeth_on_body import TeethOnBody, teeth_on_body
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
@@ -130,11 +129,8 @@ def _solve_bodies(sections: Mapping[str, BodySection], tooth_pair: ToothPair) ->
     """Solve the finite element body of every gear, by gear name; gears with equal sections and equal teeth
     share one solution.
     """
-    body_keys = {
-        gear: (section, teeth_on_body(tooth_pair, gear), gear if tooth_pair.offset_mm else None)
-        for gear, section in sections.items()
-    }
-    bodies: dict[tuple[BodySection, TeethOnBody, str | None], SolvedBody] = {}
+    body_keys = {gear: body_key(section, tooth_pair, gear) for gear, section in sections.items()}
+    bodies: dict[Hashable, SolvedBody] = {}
     for gear, section in sections.items():
         if body_keys[gear] not in bodies:
             bodies[body_keys[gear]] = solve_body(

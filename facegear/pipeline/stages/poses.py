@@ -440,7 +440,8 @@ def _summary(meshes: pd.DataFrame, leaving_loads: pd.DataFrame, worst: int, resu
     """Say in one line how the search for the loaded position ended and which mesh it changes most."""
     row = meshes.iloc[worst]
     text = (
-        f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "
+        f"converged in {count_noun(result.steps, 'step')}; contact of {row['mesh']} at "
+        f"{row['unloaded_path_mm']:.2f} mm, "
         f"its stiffness changes by {row[PERCENT[STIFFNESS]]:.1f} %"
     )
     text = f"{text}; {margin_text(meshes)}"

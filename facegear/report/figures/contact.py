@@ -9,6 +9,7 @@ import pandas as pd
 from facegear.arrays import Array, Arrays, Integers
 from facegear.contact.pattern import EDGES, SHARES, Pattern, pattern
 from facegear.contact.summary import StudiedContact
+from facegear.machine.poses.tables import hardest_mesh
 from facegear.number_format import format_number
 from facegear.report.figures.colours import (
     BLACK,
@@ -386,11 +387,11 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
     Parameters
     ----------
     meshes : pd.DataFrame
-        Table `meshes` of stage operating_pose: mesh, torque_n_m, path_mm, path_as_assembled_mm.
+        Table `meshes` of stage operating_pose.
     as_assembled : Arrays
         Contact arrays `as_assembled` of stage operating_pose, SI units.
     running : Arrays
-        Contact arrays `running`; their torque selects the mesh with the nearest one.
+        Contact arrays `running`, of the mesh whose stiffness its pose changes most.
 
     Returns
     -------
@@ -398,8 +399,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
         The figure.
     """
     torque = float(np.unique(running["line_torque_n_m"])[0])
-    name = meshes["mesh"].iloc[int(np.argmin(np.abs(meshes["torque_n_m"] - torque)))]
-    row = meshes[meshes["mesh"] == name].iloc[0]
+    row = meshes.iloc[hardest_mesh(meshes)]
     panels = {
         _operating_pose_title("as assembled", row["path_as_assembled_mm"], as_assembled): (
             as_assembled,
@@ -407,7 +407,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
         ),
         _operating_pose_title("as the machine runs", row["path_mm"], running): (running, torque),
     }
-    return pattern_panels(panels, title=f"{name} at {format_number(torque)} N m")
+    return pattern_panels(panels, title=f"{row['mesh']} at {format_number(torque)} N m")
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:

@@ -1,6 +1,7 @@
 """Keys of helical, tapered, offset and asymmetric teeth."""
 
 from dataclasses import asdict
+from pathlib import Path
 
 import pytest
 from kinds_of_teeth import public_section
@@ -8,13 +9,16 @@ from public_teeth import NAMES, public_design, public_numbers
 
 import facegear
 from facegear.build.checks import geometric_backlash
-from facegear.build.load import config_of
-from facegear.build.tooth_pair import ToothPair, check_lower_gear, pair_design
+from facegear.build.config import resolved_values
+from facegear.build.early_checks import pair_findings
+from facegear.build.load import config_of, read_layers
+from facegear.build.tooth_pair import ToothPair, pair_design
 from facegear.checking import check_config
-from facegear.errors import ConfigError
+from facegear.errors import ConfigErrors, FacegearError
 from facegear.pipeline.stages.teeth import geometry
 from facegear.schema.base import parse
 
+ROOT = Path(__file__).parents[3]
 PER_MM = {"P2": 65.055955826}
 """Change of backlash (um) by 1 mm of axial setting of public designs with taper, from the reference page."""
 
@@ -105,10 +109,92 @@ def test_a_tolerance_of_the_axial_setting_is_a_key_of_the_config():
     assert config.tolerances.causes[0].moves == {"tooth_pair.assembly.pinion_axial_um": 1}
 
 
-def test_radii_below_undercut_of_a_lower_gear_that_is_another_one_are_refused_by_key():
-    """Contact of the lower gear ended in Newton steps of its flank, long after the check of the config."""
-    section = parse(ToothPair, public_section("P4"))
-    refused = r"tooth_pair\.face_gear\.inner_radius_mm = 231\.0: must be between 242\.410 \(undercut of the"
-    with pytest.raises(ConfigError, match=rf"{refused} .* lower gear's limit$"):
-        check_lower_gear(section)
-    check_lower_gear(parse(ToothPair, public_section("P1")))
+SPRINGS = dict.fromkeys("xyz", 2e8)
+BODY = {"mass_kg": 1, "inertia_kg_m2": 0.002, "bearing_stiffness_n_per_m": SPRINGS}
+ONE_GEAR = {
+    "mesh_stiffness": {"torque_n_m": 400},
+    "transmission": {
+        "pinions": [{"name": "engine", "role": "input", "angle_deg": 0}],
+        "face_gears": ["lower"],
+        "pinion": BODY,
+        "face_gear": BODY,
+        "damping": {"mesh_n_s_per_m": 1500, "mass_per_s": 50, "bearing_s": 2e-6},
+        "transmission_error": "from_contact",
+        "torque": {"per_input_n_m": 500, "tail_share": 0},
+    },
+    "dynamics": {"speed_rpm": 6000, "sweep": {"from_rpm": 500, "to_rpm": 9000, "points": 4}},
+}
+"""A machine of a lower gear alone, with stiffness from contact."""
+
+
+@pytest.mark.parametrize(
+    ("changes", "turned_over"),
+    [
+        ({"offset_mm": 2.0}, "tooth_pair.offset_mm = -2 and"),
+        ({"shaft_angle_deg": 91.0}, "tooth_pair.shaft_angle_deg = 89 and"),
+        ({"assembly": {"offset_um": 60}}, "tooth_pair.assembly.offset_um = -60 and"),
+        ({"assembly": {"shaft_angle_error_deg": 0.01}}, "shaft_angle_error_deg = -0.01 and"),
+    ],
+)
+def test_a_lower_gear_alone_that_differs_from_an_upper_one_is_refused(changes, turned_over):
+    """Contact took the upper gear, the rows of the machine the lower one, in silence."""
+    with pytest.raises(FacegearError) as refused:
+        config_of({**make_config("P2", **changes), **ONE_GEAR})
+    message = str(refused.value)
+    assert 'transmission.face_gears = ["lower"]: must be [upper]' in message and turned_over in message
+
+
+def test_a_lower_gear_alone_on_axes_that_samples_move_is_refused():
+    cause = {"name": "axes", "spread": 5, "moves": {"tooth_pair.assembly.offset_um": 1}, "source": "drawing"}
+    values = {**make_config("P2"), **ONE_GEAR, "tolerances": {"samples": 256, "causes": [cause]}}
+    with pytest.raises(
+        FacegearError, match=r"\[upper\] where samples or designs change tooth_pair\.assembly"
+    ):
+        config_of(values)
+
+
+def test_a_lower_gear_alone_at_right_angles_or_without_bodies_of_teeth_is_a_machine():
+    config_of({**make_config("P1"), **ONE_GEAR})
+    bare = dict.fromkeys(("pinion", "face_gear", "shaper"))
+    table = [{"order": 1, "sin_n_per_m": 0.0, "cos_n_per_m": 1e7}]
+    given = {"mesh_stiffness": {"source": "harmonics", "mean_n_per_m": 4e8, "table": table}}
+    section = {**public_section("P2"), **bare, "offset_mm": 2.0}
+    machine = ONE_GEAR["transmission"] | {"backlash_um": 100, "transmission_error": {"amplitude_um": 0}}
+    config_of({"case": "kind", **ONE_GEAR, **given, "transmission": machine, "tooth_pair": section})
+
+
+def make_machine_of_two_gears(teeth: dict) -> dict:
+    """Return the plain values of the shipped helical machine with other teeth and two face gears."""
+    values = read_layers(ROOT / "config" / "helical.yaml") | {"tooth_pair": teeth}
+    values["transmission"] |= {
+        "face_gears": ["lower", "upper"],
+        "pinions": values["transmission"]["pinions"][:1],
+    }
+    return values
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "decides"),
+    [
+        ("P4", "face_gear.inner_radius_mm = 231.0", "undercut of the coast flank"),
+        ("P3", "pinion.middle_mm = 162.0", "to cover half of the gear's face"),
+    ],
+)
+def test_a_lower_gear_that_cannot_exist_is_refused_by_its_key(name, key, decides):
+    """The machine passed, and its run ended in a solver that found no flank at a height."""
+    with pytest.raises(ConfigErrors) as refused:
+        config_of(make_machine_of_two_gears(public_section(name)))
+    (line,) = refused.value.lines
+    assert f"tooth_pair.{key}: must be " in line and decides in line
+    assert "for the lower gear, which the pinions meet at offset_mm = " in line
+
+
+def test_a_check_tells_what_is_wrong_with_the_teeth_of_another_lower_gear():
+    """The upper gear's contact lies on its face, that of the lower gear beside it, which went unsaid."""
+    teeth = public_section("P4") | {"offset_mm": -15}
+    teeth["face_gear"]["inner_radius_mm"] = 243
+    teeth["pinion"]["middle_mm"] = 247
+    findings = pair_findings(resolved_values(config_of(make_machine_of_two_gears(teeth))))
+    assert len(findings.facts) == 2 and findings.facts[0].startswith("geometry: contact ratio 1.673")
+    assert len(findings.remarks) >= 2
+    assert all(line.startswith("lower gear: tooth_pair: ") for line in findings.remarks)

@@ -9,6 +9,7 @@ import pytest
 from facegear.__main__ import main
 from facegear.build.cases import expand_cases
 from facegear.build.load import config_of, load_config, read_layers
+from facegear.errors import ConfigErrors
 from facegear.schema.plausibility import expected_sizes, plausibility_notes
 
 ROOT = Path(__file__).parents[3]
@@ -97,3 +98,12 @@ def test_values_that_are_refused_elsewhere_end_in_no_error_here(key, junk):
     inside, last = place_of(values, key)
     inside[last] = junk
     assert isinstance(plausibility_notes(values), list)
+
+
+@pytest.mark.parametrize(("angle", "end"), [(10.0, "equal to 20"), (1.5, "equal to 20; is it in rad?")])
+def test_an_angle_beyond_half_a_turn_in_rad_is_not_taken_for_one(angle, end):
+    """An angle of 10 deg was asked whether it is in rad, 573 deg."""
+    values = {"extends": str(ROOT / "facegear" / "example.yaml"), "tooth_pair": {"shaft_angle_deg": angle}}
+    with pytest.raises(ConfigErrors) as refused:
+        config_of(values)
+    assert refused.value.lines[0].endswith(end)

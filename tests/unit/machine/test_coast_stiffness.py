@@ -87,9 +87,8 @@ def test_contact_gives_each_flank_the_series_of_its_own_table_and_one_scale(sour
     zeros = Harmonics(np.zeros(1), np.zeros(1))
     request = StiffnessRequest(source, 2e8, 500.0, "average", 4, 1.0, zeros)
     stiffness = stiffness_from_contact(ltca, request, flanks)
-    (lower_drive, lower_back), (upper_drive, upper_back) = flank_series(
-        stiffness.harmonics, ["lower", "upper"]
-    )
+    by_gear = flank_series(stiffness.harmonics)
+    (lower_drive, lower_back), (upper_drive, upper_back) = by_gear["lower"], by_gear["upper"]
     scale = 0.5 if source == "fem_scaled" else 1.0
     for found, expected in (
         (upper_drive, DRIVE),
@@ -98,24 +97,29 @@ def test_contact_gives_each_flank_the_series_of_its_own_table_and_one_scale(sour
         (lower_back, DRIVE),
     ):
         np.testing.assert_allclose(found(CYCLES), scale * expected(CYCLES), rtol=1e-9)
-    alone = flank_series(stiffness.harmonics, ["lower"])
-    np.testing.assert_allclose(alone[0][1](CYCLES), scale * COAST(CYCLES), rtol=1e-9)
 
 
 def test_a_config_gives_coast_flanks_their_stiffness():
     base = facegear.load("config/harmonics_only.yaml").with_values(GEOMETRIC_MACHINE)
     gearbox = base.with_values({"mesh_stiffness.coast": GIVEN})
     table = gearbox.stiffness().content["harmonics"]
-    (_, back), _ = flank_series(table, ["lower", "upper"])
+    _, back = flank_series(table)["lower"]
     np.testing.assert_allclose(
         back(CYCLES), 3e8 + 1e7 * np.sin(2 * np.pi * CYCLES) + 2e7 * np.cos(2 * np.pi * CYCLES)
     )
-    assert flank_series(base.stiffness().content["harmonics"], ["lower", "upper"]) is None
+    assert flank_series(base.stiffness().content["harmonics"]) is None
     np.testing.assert_array_equal(
         series_of(table).cosine, series_of(base.stiffness().content["harmonics"]).cosine
     )
     moved, still = (each.statics().table()["force_n"] for each in (gearbox, base))
     assert np.abs(moved - still).max() > 1.0
+
+
+def test_a_gear_alone_has_the_flanks_of_an_upper_one_whatever_its_name():
+    places = (("in", Role.INPUT, 0.0),)
+    alone, two = (make_layout(places=places, sides=sides) for sides in ((Side.LOWER,), tuple(Side)))
+    assert alone.contact_gears == ("upper",)
+    assert two.contact_gears == ("lower", "upper")
 
 
 @pytest.mark.parametrize(

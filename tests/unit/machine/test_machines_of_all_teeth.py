@@ -86,3 +86,22 @@ def test_sensitivities_name_the_axial_places_of_pinions_with_other_teeth():
     low, high = next((low, high) for name, low, high, _ in _changes(machine) if name == "position z p0")
     moved = high.imperfections.outwards - low.imperfections.outwards
     assert moved[0] == pytest.approx(2 * STEP) and not moved[1:].any()
+
+
+def gear_alone(gear, sign, **pair):
+    """Return a machine with three pinions on one gear, their angles times `sign`."""
+    roles = {"first": ("input", 0.0), "second": ("input", 130.0), "tail": ("tail", 215.0)}
+    pinions = [{"name": name, "role": role, "angle_deg": sign * at} for name, (role, at) in roles.items()]
+    kind = {"helix_angle_deg": 10.0, "taper_angle_deg": 3.0, "pressure_angle_deg": {"drive": 25, "coast": 21}}
+    values = {f"tooth_pair.{key}": value for key, value in {**kind, **pair}.items()}
+    machine = {"transmission.face_gears": [gear], "transmission.pinions": pinions}
+    return facegear.load("config/harmonics_only.yaml").with_values({**MACHINE, **machine, **values})
+
+
+def test_a_lower_gear_alone_is_the_upper_one_of_the_opposite_offset_turned_over():
+    """A refusal of such a gear with bodies of teeth tells the user to write the upper one."""
+    lower = gear_alone("lower", 1.0, offset_mm=15.0, shaft_angle_deg=97.0)
+    upper = gear_alone("upper", -1.0, offset_mm=-15.0, shaft_angle_deg=83.0)
+    for result, column in (("statics", "force_n"), ("modes", "frequency_hz"), ("response", "value")):
+        here, there = (getattr(gearbox, result)().table()[column] for gearbox in (lower, upper))
+        np.testing.assert_allclose(there, here, rtol=1e-9, atol=1e-9 * here.abs().max())

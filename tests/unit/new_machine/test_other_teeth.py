@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from facegear.build.config import resolved_values
+from facegear.build.early_checks import machine_findings
 from facegear.build.load import config_of
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import pair_design
@@ -104,3 +106,17 @@ def test_teeth_that_have_no_face_are_refused_in_one_line(kind):
     with pytest.raises(FacegearError) as refused:
         first_machine(make_wishes(**kind))
     assert "\n" not in str(refused.value) and str(refused.value).startswith("no teeth for 23/143")
+
+
+@pytest.mark.parametrize("kind", [{"helix_angle_deg": 15.0}, {"taper_angle_deg": 4.0}])
+def test_a_split_torque_machine_of_other_teeth_splits_its_torque(kind, tmp_path):
+    """Its bearings were stiff, so that at rest no load reached the lower gear and the idlers."""
+    wishes = make_wishes(pinions=2, idlers=2, **kind)
+    made = first_machine(wishes)
+    path = tmp_path / "own.yaml"
+    path.write_text(made.text)
+    values = resolved_values(config_of(read_yaml(path)))
+    springs = values["transmission"]["pinion"]["bearing_stiffness_n_per_m"]
+    assert springs["z"] > 10.0 * springs["x"]  # holds the axial force of the teeth
+    assert not [line for line in machine_findings(values).remarks if "no load" in line or "torques" in line]
+    assert any(line.startswith("K_gamma 1.") for line in made.expectations)

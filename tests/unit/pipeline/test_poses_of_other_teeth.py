@@ -8,7 +8,6 @@ from test_other_teeth_run import COARSE, MACHINE
 
 import facegear
 from facegear.build.load import merge_values
-from facegear.errors import FacegearError
 from facegear.machine.poses.surface import RADIUS, STIFFNESS, PoseSurface
 from facegear.strength.root_stress import largest_tension
 from facegear.strength.root_tables import root_from_arrays
@@ -138,12 +137,3 @@ def test_poses_of_a_duty_cycle_follow_the_load_of_each_bin(gearbox_of):
     carrying = table[table["force_n"] > 0.0].set_index(["bin", "mesh"])["unloaded_path_mm"]
     np.testing.assert_allclose(carrying.loc[1][own.index], own, rtol=1e-9)
     assert (carrying.loc[2] - carrying.loc[1]).abs().max() > 0.05
-
-
-@pytest.mark.parametrize(("key", "value"), [("offset_mm", 2.0), ("shaft_angle_deg", 91.0)])
-def test_a_lower_gear_alone_on_such_axes_is_refused_by_key(key, value):
-    """Its contact would be that of an upper gear, which has other teeth."""
-    values = {**COARSE, **MACHINE, "transmission": POSED | {"face_gears": ["lower"]}}
-    section = public_section("P2") | {key: value}
-    with pytest.raises(FacegearError, match=r'transmission\.face_gears = \["lower"\]: must be \[upper\]'):
-        facegear.load({"case": "kind", **values, "tooth_pair": section}, results=None)

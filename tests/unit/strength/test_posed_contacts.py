@@ -94,6 +94,34 @@ def test_changes_of_stress_follow_one_another(surface, first, second, third, tor
         assert steps == pytest.approx(there / here, rel=1e-9)
 
 
+def table_of(solved):
+    """Table by torque of stage posed_stress for one contact."""
+    return pd.DataFrame(
+        {
+            "contact": 0,
+            "torque_n_m": TORQUES,
+            "pressure_mpa": 1e-6 * solved.pressure.pressure,
+            "pressure_error_mpa": 1e-6 * solved.pressure.error,
+            **dict.fromkeys(("tip_line_load_n_per_mm", "tip_length_mm", "fillet_share"), 0.0),
+        }
+    )
+
+
+def solved_arrays(solved):
+    """Arrays of stage posed_stress for one mesh that carries on its back flank."""
+    return {
+        **root_arrays_of(0, solved.roots),
+        "mesh": np.array(["one/upper"]),
+        "contact": np.array([0]),
+        "carrying": np.array([1]),
+        "mesh_torque_n_m": np.array([500.0]),
+        "path_m": np.array([[ASIDE.path, 0.264]]),
+        "angle_rad": np.zeros(1),
+        "path_at_rest_m": np.array([REST.path]),
+        "angle_at_rest_rad": np.zeros(1),
+    }
+
+
 def posed(surface):
     contacts = {
         "tail/upper": {"drive": contact(1.0), "back": contact(0.9)},
@@ -122,6 +150,22 @@ def test_a_load_has_the_stress_of_its_own_mesh_where_its_bin_puts_it(surface, to
         assert found[1] == pytest.approx(stress * stress_ratio(surface, name, REST, ASIDE)(at)[0], rel=1e-12)
 
 
+def test_a_lower_gear_alone_is_judged_by_the_surface_of_its_own_flanks(surface):
+    """Its errors of assembly are not those of an upper one; the statics of its pose use it, too."""
+    lower = replace(surface, values={name: values**2 for name, values in surface.values.items()})
+    both = replace(surface, further=(lower,), flank_numbers=((0, 0), (1, 1)))
+    arrays = {**solved_arrays(contact(1.0)), "mesh": np.array(["one/lower"])}
+    assembled = {("upper", flank): contact(1.0) for flank in ("drive", "back")}
+    machine = posed_contacts(arrays, table_of(contact(1.0)), both, assembled, ("upper",))
+    ratio = stress_ratio(lower, ROOTS["pinion"], REST, ASIDE)(np.array([600.0]))[0]
+    other_flank = machine.contacts["one/lower"]["drive"]
+    assert other_flank.tension["pinion"](600.0) == pytest.approx(600e6 * ratio, rel=1e-6)
+    stands = {(0, "one/lower", "drive"): ContactPose(0.27, 0.0)}
+    loads = machine.stresses(duty([600.0], [0], ["one/lower"], gear="pinion"), stands)
+    ratio *= stress_ratio(lower, ROOTS["pinion"], ASIDE, *stands.values())(np.array([600.0]))[0]
+    assert loads.tension[0] == pytest.approx(600e6 * ratio, rel=1e-6)
+
+
 def test_a_duty_cycle_that_names_no_mesh_is_judged_by_the_one_that_carries_most(surface):
     machine = posed(surface)
     stands = {(0, *key): REST for key in machine.contact_poses}
@@ -137,26 +181,7 @@ def test_a_duty_cycle_that_names_no_mesh_is_judged_by_the_one_that_carries_most(
 
 def test_the_flank_that_carries_has_contact_solved_there_and_the_other_that_of_the_assembly_changed(surface):
     solved = contact(2.0)
-    table = pd.DataFrame(
-        {
-            "contact": 0,
-            "torque_n_m": TORQUES,
-            "pressure_mpa": 1e-6 * solved.pressure.pressure,
-            "pressure_error_mpa": 1e-6 * solved.pressure.error,
-            **dict.fromkeys(("tip_line_load_n_per_mm", "tip_length_mm", "fillet_share"), 0.0),
-        }
-    )
-    arrays = {
-        **root_arrays_of(0, solved.roots),
-        "mesh": np.array(["one/upper"]),
-        "contact": np.array([0]),
-        "carrying": np.array([1]),
-        "mesh_torque_n_m": np.array([500.0]),
-        "path_m": np.array([[ASIDE.path, 0.264]]),
-        "angle_rad": np.zeros(1),
-        "path_at_rest_m": np.array([REST.path]),
-        "angle_at_rest_rad": np.zeros(1),
-    }
+    arrays, table = solved_arrays(solved), table_of(solved)
     assembled = {(gear, flank): contact(1.0) for gear in GEARS for flank in ("drive", "back")}
     found = posed_contacts(arrays, table, surface, assembled, GEARS)
     assert found.loaded_flanks == {"one/upper": "back"}

@@ -8,6 +8,7 @@ from kinds_of_teeth import public_section
 
 import facegear
 from facegear.build.checks import geometric_backlash
+from facegear.build.elastic_bodies import body_key
 from facegear.build.machine_layout import wired_layout
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, pair_design
@@ -207,7 +208,7 @@ def test_an_axial_setting_of_the_pinion_asks_for_a_contact_and_no_bodies(solved)
 def test_a_body_with_fitted_teeth_is_another_for_each_key_of_other_teeth(key):
     body = parse(BodySection, {"teeth": "fitted", "rim": RIM})
     own, other = (parse(ToothPair, values) for values in (SECTION, moved(SECTION, key, KEYS[key])))
-    keys = [tooth_contact._body_key(body, pair, "upper") for pair in (own, other)]
+    keys = [body_key(body, pair, "upper") for pair in (own, other)]
     assert keys[0] != keys[1]
 
 
@@ -256,5 +257,5 @@ def test_a_design_whose_lower_gear_cannot_be_is_refused_by_key():
         pair={key: values[key] for key in ("tooth_pair", "mesh", "contact", "mesh_stiffness")},
         flanks={key: [SimpleNamespace(gauges=None)] for key in ("pinion", "face_gear")},
     )
-    with pytest.raises(ConfigError, match="this is the lower gear's limit"):
+    with pytest.raises(ConfigError, match="for the lower gear, which"):
         assessor(searched_machine, 1, 2)([25.0])

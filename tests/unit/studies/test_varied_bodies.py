@@ -9,6 +9,7 @@ import pytest
 
 import facegear
 from facegear.build.config import resolved_values
+from facegear.build.elastic_bodies import body_key
 from facegear.build.load import load_config
 from facegear.build.machine import MachineInputs
 from facegear.build.tooth_numbers import ToothNumbers
@@ -116,7 +117,7 @@ def test_fitted_body_is_another_where_the_teeth_are_cut_otherwise_and_not_where_
     relieved = {**pair, "face_gear": {**pair["face_gear"], "modifications": relief}}
     own, other, same = (parse(ToothPair, given) for given in (pair, changed, relieved))
     fitted = FLEXIBLE.transmission.face_gear.body.model_copy(update={"teeth": "fitted"})
-    key_of = tooth_contact._body_key
+    key_of = body_key
     keys = [key_of(fitted, teeth, "upper") for teeth in (own, same, other)]
     assert keys[0] == keys[1] != keys[2]
 

@@ -85,6 +85,25 @@ def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_la
     assert taken <= MAX_RELIEF * design.module * (1 + 1e-9)
 
 
+@pytest.mark.parametrize(
+    ("middle", "taper", "line"),
+    [
+        (
+            -0.26,
+            0.0,
+            "pinion.middle_mm = -260.0: must be more than 15.000: the pinion reaches the gear's axis",
+        ),
+        (0.264, -15.0, "undercut at the outer end; a taper_angle_deg nearer to 0 helps"),
+    ],
+)
+def test_a_pinion_out_of_place_or_with_too_much_taper_names_what_helps(pair, middle, taper, line):
+    """The pinion's width was asked to be less than -520 mm, and a smaller taper, which was the mistake."""
+    design = replace(changed(pair(26), pinion__middle=middle), taper_angle=radians(taper))
+    with pytest.raises(GeometryError) as refused:
+        check(design)
+    assert line in str(refused.value)
+
+
 def test_a_gear_outside_its_limits_is_reported_both(pair):
     with pytest.raises(GeometryError, match=r"between 245\.800 \(undercut\) and 293\.208 \("):
         check(changed(pair(26), face_gear__inner_radius=0.24))

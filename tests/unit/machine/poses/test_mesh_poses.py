@@ -95,7 +95,7 @@ def moved_by(model: LinearModel, size=1.0):
 )
 @pytest.mark.parametrize("side", SIDES)
 def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):
-    pose = pose_of(*motions(side, design), design.mean_radius)
+    pose = pose_of(*motions(side, design), design.mean_radius, design.family.motion)
     errors = pose.errors
     parts = (1e6 * errors.offset, 1e6 * errors.gear_axial, 1e6 * pose.outward)
     published = PUBLISHED[side]
@@ -121,7 +121,7 @@ def test_a_pair_in_its_pose_stands_as_both_moved_bodies_do(design, parts, phi1, 
     first, second, third, fourth = np.array(parts).reshape(4, 3)
     pinion = body_motion(0.1 * first, second, (0.0, design.mean_radius, 0.0))
     gear = body_motion(0.1 * third, fourth, (0.0, 0.0, -0.05))
-    pose = pose_of(pinion, gear, design.mean_radius)
+    pose = pose_of(pinion, gear, design.mean_radius, design.family.motion)
     points = np.array([[0.01, 0.25, -0.04], [-0.02, 0.27, 0.03], [0.0, 0.26, 0.0]])
     turned = points @ body_rotation("pinion", phi1 + (0 - 0.5) * 2 * np.pi / 23).T
     brute = gear.inverse().points(pinion.points(turned)) @ body_rotation("face_gear", -phi2).T
@@ -139,7 +139,7 @@ def test_the_first_order_of_a_pose_errs_four_times_less_for_half_the_motion(desi
     differences = []
     for size in (1.0, 0.5, 0.25):
         linear = mesh_poses(model, layout, design.mean_radius, moved_by(model, size))
-        pose = pose_of(*motions(side, design, size), design.mean_radius)
+        pose = pose_of(*motions(side, design, size), design.mean_radius, design.family.motion)
         exact = pose.errors
         first = linear.errors(mesh)
         parts = (first.offset, first.gear_axial, 0.1 * first.shaft_angle_error, linear.outward[mesh])

@@ -145,3 +145,12 @@ def test_patterns_that_run_outwards_come_nearer_to_the_outer_end(gearbox):
     nearer, further = (margins.loc[name, "pattern_to_outer_end_mm"] for name in outward)
     assert nearer <= further
     assert margin_text(gearbox.operating_pose().table())
+
+
+def test_edges_that_the_same_meshes_reach_are_named_together():
+    """Patterns of helical teeth reach every edge, which made four sentences of one."""
+    meshes = pd.DataFrame({"mesh": ["first/upper", "second/upper"], **dict.fromkeys(MARGINS, 0.0)})
+    meshes["pattern_to_gear_tip_mm"] = [0.0, 1.0]
+    ends = "the inner end of the face, the outer end of the face, the pinion's tip in every mesh"
+    tip = "the gear's tip in first/upper"
+    assert margin_text(meshes) == f"the pattern reaches {ends}; the pattern reaches {tip}"

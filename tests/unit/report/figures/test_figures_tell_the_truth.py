@@ -11,7 +11,7 @@ from facegear.contact.pattern import LTCA_COLUMNS, SHARES
 from facegear.machine.modes import ModeClass
 from facegear.report.figures.campbell import campbell
 from facegear.report.figures.comparison import curves_compared
-from facegear.report.figures.contact import close_pitch, contact_pattern
+from facegear.report.figures.contact import close_pitch, contact_pattern, pose_pattern
 from facegear.report.figures.draw_matplotlib import draw, save
 from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
 from facegear.report.figures.marks import Bars
@@ -223,6 +223,16 @@ def test_the_drawing_of_a_fine_contact_pattern_stays_small(tmp_path):
     arrays = {"point_m": points.reshape(-1, 3)} | line_arrays(points, [100.0], pressure)
     save(contact_pattern(arrays), tmp_path / "pattern.svg")
     assert (tmp_path / "pattern.svg").stat().st_size < 300_000
+
+
+def test_the_pattern_of_a_pose_names_its_own_mesh_among_others_of_the_same_torque():
+    """The nearest torque named the mesh, which two inputs shared but for rounding."""
+    along, across = np.meshgrid(np.linspace(0.25, 0.275, 6), np.linspace(0.04, 0.046, 6))
+    points = np.stack([across, along, np.zeros_like(along)], axis=-1)
+    lines = {"point_m": points.reshape(-1, 3)} | line_arrays(points, [100.0], np.full(along.size, 1e9))
+    meshes = pd.DataFrame({"mesh": ["first/upper", "second/upper"], "torque_n_m": [100.0, 100.0]})
+    meshes = meshes.assign(path_mm=262.0, path_as_assembled_mm=263.0, stiffness_by_pose_percent=[0.1, -4.0])
+    assert pose_pattern(meshes, lines, lines).title == "second/upper at 100 N m"
 
 
 @pytest.mark.parametrize(
