@@ -16,8 +16,9 @@ from facegear.contact.options import ContactPlan
 from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
 from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
-from facegear.contact.summary import by_flank, by_torque, with_wrenches
+from facegear.contact.summary import by_flank, by_torque, join_flanks, with_wrenches
 from facegear.teeth.design import AssemblyErrors, Material, PairDesign
+from facegear.teeth.placement import nominal_pairs, nominal_teeth
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
@@ -145,6 +146,10 @@ def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
     }
 
 
+STIFFNESS_COLUMNS = ("torque_n_m", "position", "k_average_n_per_m", "k_local_n_per_m", "interference_um")
+"""Columns of table `ltca` from which the stiffness of a flank follows."""
+
+
 @dataclass(frozen=True, eq=False)
 class ContactAnalysis:
     """Solved contact of the different pairs that flanks are part of; tables and arrays are made when first
@@ -179,6 +184,15 @@ class ContactAnalysis:
             return tables
         on = ["torque_n_m", "position"]
         return [table.merge(wrench, on=on) for table, wrench in zip(tables, self.wrenches, strict=True)]
+
+    @cached_property
+    def other_flanks(self) -> pd.DataFrame:
+        """The columns STIFFNESS_COLUMNS of `ltca` for the flanks whose design differs from the upper gear's
+        drive flank, by gear and flank; without rows for spur teeth.
+        """
+        first, *further = (table[list(STIFFNESS_COLUMNS)] for table in self.ltca)
+        numbers = np.zeros_like(self.numbers) if self.is_spur else self.numbers
+        return join_flanks([first.iloc[:0], *further], numbers)[[*STIFFNESS_COLUMNS, "gear", "flank"]]
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
@@ -241,7 +255,8 @@ def contact_analysis(
     flanks: Sequence[PairFlanks],
     plan: ContactPlan,
     every_flank: bool = True,
-    known_contact: KnownContact | None = None,
+    known_contacts: Sequence[KnownContact | None] = (),
+    gears: Sequence[str] | None = None,
 ) -> ContactAnalysis:
     """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
@@ -260,8 +275,10 @@ def contact_analysis(
         Torques, positions and options.
     every_flank : bool
         Whether all flanks are solved, not only the upper gear's drive flank.
-    known_contact : KnownContact, optional
-        Contact of a pair that differs little, with the same nodes and plan.
+    known_contacts : Sequence[KnownContact or None]
+        Contact of pairs that differ little, with the same nodes and plan, in the order of `flanks`.
+    gears : Sequence[str], optional
+        Gears whose flanks are solved; those that `flanks` are of if not given.
 
     Returns
     -------
@@ -273,12 +290,15 @@ def contact_analysis(
     NotConverged
         Names position and torque.
     """
-    models, numbers = flank_models(design, flanks)
+    models, numbers = flank_models(design, flanks, gears)
     if not every_flank:
         models, numbers = models[:1], np.zeros_like(numbers)
-    return ContactAnalysis(
-        models, [_solve_model(pair_model, materials, plan, known_contact) for pair_model in models], numbers
-    )
+    contact_by_teeth = dict(zip(nominal_pairs(design), known_contacts, strict=False))
+    results = [
+        _solve_model(pair_model, materials, plan, contact_by_teeth.get(nominal_teeth(pair_model.design)))
+        for pair_model in models
+    ]
+    return ContactAnalysis(models, results, numbers)
 
 
 def _solve_model(

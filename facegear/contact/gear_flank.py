@@ -377,7 +377,9 @@ def gears_of(design: PairDesign, flanks: Sequence[PairFlanks]) -> Sequence[str]:
     return GEARS if len(flanks) >= len(nominal_pairs(design)) else GEARS[:1]
 
 
-def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list[ContactModel], Integers]:
+def flank_models(
+    design: PairDesign, flanks: Sequence[PairFlanks], gears: Sequence[str] | None = None
+) -> tuple[list[ContactModel], Integers]:
     """Build the contact models of all flanks that differ, each on the bodies that it belongs to.
 
     Parameters
@@ -386,6 +388,8 @@ def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list
         Pair of gears.
     flanks : Sequence[tuple[GearFlank, GearFlank]]
         Flanks of `placement.nominal_pairs`, in their order; models of missing ones are left out.
+    gears : Sequence[str], optional
+        Gears that there are, of `upper` and `lower`; those of `gears_of` if not given.
 
     Returns
     -------
@@ -393,7 +397,7 @@ def flank_models(design: PairDesign, flanks: Sequence[PairFlanks]) -> tuple[list
         Models, that of the upper gear's drive flank first, and the number of the model of each gear's
         each flank, (2, 2), as `placement.distinct_pairs` returns it.
     """
-    different, numbers = distinct_pairs(design, gears_of(design, flanks))
+    different, numbers = distinct_pairs(design, gears or gears_of(design, flanks))
     bodies = dict(zip(nominal_pairs(design), flanks, strict=False))
     pair_bodies = [(pair, bodies.get(nominal_teeth(pair))) for pair in different]
     return [contact_model(pair, *flanks) for pair, flanks in pair_bodies if flanks is not None], numbers

@@ -261,16 +261,30 @@ def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:
 
 
 @dataclass(frozen=True, eq=False)
-class PairAnswers:
-    """Largest values over a pitch.
+class FlankAnswers:
+    """Largest values over a pitch of the contact of one flank.
 
-    `error` (p,) m: the loaded transmission error at evenly spaced positions under the operating load;
-    `pressure` on the flanks; `roots`, Pa in the fillets by body at a torque (N m), where they carry gauges.
+    `arm` (m) is the torque on the pinion over the force along the flank's normal; `pressure` is on the flank;
+    `roots`, Pa in the fillets by body at a torque (N m), where they carry gauges.
+    """
+
+    arm: float
+    pressure: ContactPressure
+    roots: Mapping[str, Callable[[float], float]]
+
+
+@dataclass(frozen=True, eq=False)
+class PairAnswers:
+    """Answers of the contact of a pair.
+
+    `error` (p,) m: the loaded transmission error of the upper gear's drive flank at evenly spaced positions
+    under the operating load; `flanks`: the contacts that differ, that of this flank first; `numbers` (2, 2):
+    number of the contact of each gear (upper, lower) and flank (drive, back).
     """
 
     error: Array
-    pressure: ContactPressure
-    roots: Mapping[str, Callable[[float], float]]
+    flanks: tuple[FlankAnswers, ...]
+    numbers: Integers
 
     @property
     def error_range(self) -> float:

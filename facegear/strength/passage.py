@@ -127,7 +127,7 @@ class PassingTension:
         bounds = np.stack([np.stack([_bounds(sign * part) for part in readings]) for sign in (-1.0, 1.0)])
         return cls(body, flank.side.flank_rows * flank.side.shape[1], readings, bounds)
 
-    def under(self, loads: Arrays) -> Callable[[float], float]:
+    def under(self, loads: Arrays, variant: int = 0) -> Callable[[float], float]:
         """Return the largest stress on either fillet over the passage and the face, as a function of torque.
 
         Forces on the body's own fillet are left out.
@@ -135,17 +135,21 @@ class PassingTension:
         Parameters
         ----------
         loads : Arrays
-            LOAD_ARRAYS of one variant.
+            LOAD_ARRAYS.
+        variant : int
+            Number of the variant whose loads act.
 
         Returns
         -------
         Callable[[float], float]
             Stress (Pa) at a torque (N m).
         """
-        by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes)
+        by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes, variant)
         torques, count = np.unique(loads["torque_n_m"]), np.unique(loads["position"]).size
         teeth = np.array(sorted(by_tooth))
-        every = sp.vstack([by_tooth[tooth] for tooth in teeth], format="csr")
+        # loads of flanks with more nodes make the matrices wider than this flank is
+        nodes = self.readings.shape[-1]
+        every = sp.vstack([by_tooth[tooth] for tooth in teeth], format="csr")[:, :nodes]
         first_rows = np.arange(teeth.size)[:, None] * (torques.size * count)
 
         def force(row: int) -> sp.csr_matrix:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.build.checks import check_positions
+from facegear.build.lower_gear import check_lower_gear
 from facegear.build.machine_layout import wired_layout
 from facegear.build.plans import jump_range
 from facegear.build.tooth_pair import ToothPair
@@ -111,6 +112,7 @@ def assessor(
             start, {key: float(number) for variable, number in numbers for key in variable.sets}
         )
         pair = parse(ToothPair, design_values["tooth_pair"], "this design")
+        check_lower_gear(pair, design_values["transmission"]["face_gears"])
         check_positions(pair, parse(Transmission, design_values["transmission"], "this design"))
         nominal = ask(design_values)
         sample_quantities = [

@@ -14,7 +14,7 @@ from facegear.build.machine import tables_of
 from facegear.build.notes import require_buildable, require_room
 from facegear.build.plans import settings, sharing_options
 from facegear.build.tooth_numbers import ToothNumbers
-from facegear.contact.gear_flank import from_arrays
+from facegear.contact.gear_flank import every_flank_from_arrays
 from facegear.errors import FacegearError
 from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
@@ -27,7 +27,7 @@ from facegear.motion.plan import JumpRange, Settings
 from facegear.motion.steady_state.guide import Guide
 from facegear.motion.steady_state.simulate import build_model
 from facegear.motion.sweeps.whole_sweep import jump_margin
-from facegear.quantities import BODIES, JUMP_MARGIN, PEAK
+from facegear.quantities import BODIES, JUMP_MARGIN
 from facegear.schema.base import keys_named, parse
 from facegear.schema.lubrication import LubricationSection
 from facegear.schema.motion import Accuracy, LoadSharing
@@ -50,6 +50,7 @@ from facegear.studies.tooth_contact import (
     VariedBodies,
     meshes_in_contact,
 )
+from facegear.teeth.placement import GEARS
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """Function that returns the quantities of a machine by column, given values of
@@ -137,7 +138,12 @@ class VariedMachine:
         """Function from section tooth_pair to stiffness, error and contact of its meshes, see
         `tooth_meshes`.
         """
-        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
+        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.gears, self.law)
+
+    @property
+    def gears(self) -> Sequence[str]:
+        """Gears of the machine by the names under which contact knows them: one alone is the upper."""
+        return GEARS if len(self.transmission["face_gears"]) > 1 else GEARS[:1]
 
     @cached_property
     def varied_bodies(self) -> "VariedBodies | None":
@@ -231,6 +237,7 @@ def tooth_meshes(
     harmonics: pd.DataFrame,
     pair: Values | None,
     flanks: GearFlanks,
+    gears: Sequence[str],
     law: Arrays | None = None,
     rub: "ReduceTeeth | None" = None,
     lubricated_teeth: "LubricatedTeeth | None" = None,
@@ -249,6 +256,8 @@ def tooth_meshes(
         None.
     flanks : GearFlanks
         Compliance of the bodies of `pair` by name.
+    gears : Sequence[str]
+        Gears of the machine, of `upper` and `lower`.
     law : mapping of arrays or None
         Arrays `law` of stage mesh_law; None where k does not depend on the load.
     rub : ReduceTeeth or None
@@ -262,7 +271,7 @@ def tooth_meshes(
         Function from plain values of section tooth_pair to the excitation by its meshes.
     """
     if pair is not None:
-        return meshes_in_contact(pair, flanks, rub)
+        return meshes_in_contact(pair, flanks, gears, rub)
     series, error = series_of(harmonics), unloaded_error(harmonics)
     tables = None if law is None else tables_of(law)
     return lambda values: PairExcitation(
@@ -276,7 +285,7 @@ def tooth_meshes(
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> GearFlanks:
-    """Return the compliance of both bodies from stored arrays.
+    """Return the compliance of both bodies from stored arrays, in all pairs of bodies.
 
     Parameters
     ----------
@@ -290,7 +299,7 @@ def stored_flanks(arrays: Sequence[Arrays]) -> GearFlanks:
     """
     if not arrays:
         return {}
-    return {body: from_arrays(arrays_of_body) for body, arrays_of_body in zip(BODIES, arrays, strict=True)}
+    return {body: every_flank_from_arrays(of_body) for body, of_body in zip(BODIES, arrays, strict=True)}
 
 
 def judge(
@@ -391,7 +400,7 @@ def judge(
         mesh, lumped_machine = assemble(values)
         speed = values["dynamics"]["speed_rpm"]
         quantities, loads = ask(lumped_machine, speed, guide())
-        quantities |= mesh.quantities(quantities[PEAK])
+        quantities |= mesh.quantities(loads, lumped_machine.layout)
         if mesh.lubricated_teeth is not None:
             quantities |= judge_friction(
                 mesh.lubricated_teeth, values["lubrication"], lumped_machine, speed, loads

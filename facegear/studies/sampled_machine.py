@@ -74,7 +74,9 @@ class SampledMachine(VariedMachine):
         if self.ltca is not None and self.pressure is not None:
             section = ToothPair.of_config(self.lubrication_sections["tooth_pair"])
             lubricated_teeth = rub(self.ltca, self.pressure, section)
-        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law, rub, lubricated_teeth)
+        return tooth_meshes(
+            self.harmonics, self.pair, self.flanks, self.gears, self.law, rub, lubricated_teeth
+        )
 
     @cached_property
     def lubricated_states(self) -> list[tuple[LubricationSection, float]]:

@@ -4,11 +4,12 @@ The body of a face gear is solved again only where its section differs.
 """
 
 import json
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from typing import Any, Self
 
+import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
@@ -19,17 +20,18 @@ from facegear.build.plans import contact_plan, stiffness_request
 from facegear.build.tooth_numbers import ToothNumbers
 from facegear.build.tooth_pair import ToothPair, contact_setup, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
-from facegear.contact.gear_flank import GearFlank, gear_flank
+from facegear.contact.gear_flank import GearFlank, PairFlanks, gear_flanks
 from facegear.contact.ltca import KnownContact, even_positions, known_contact
 from facegear.contact.resolution import check_resolution
 from facegear.contact.summary import contact_summary
 from facegear.errors import FacegearError
 from facegear.harmonics import Harmonics
 from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.layout import Layout
 from facegear.machine.machine import Machine
 from facegear.meshing.stiffness_curve import LoadTable, unloaded_samples
 from facegear.meshing.stiffness_request import StiffnessRequest
-from facegear.meshing.stiffness_source import curve_from_contact
+from facegear.meshing.stiffness_source import curve_from_contact, stiffness_from_contact
 from facegear.parts.gear_body import reduced_body, solve_body
 from facegear.parts.reduced_body import ReducedBody
 from facegear.quantities import BODIES, ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
@@ -39,13 +41,16 @@ from facegear.schema.contact import Contact, Mesh
 from facegear.schema.gear_body import BodySection
 from facegear.schema.stiffness import MeshStiffness
 from facegear.schema.transmission import Transmission
-from facegear.strength.contact_pressure import PairAnswers, contact_pressure
+from facegear.sharing.quantities import FlankLoads
+from facegear.strength.contact_pressure import FlankAnswers, PairAnswers, contact_pressure
 from facegear.strength.passage import PassingTension
 from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import GEARS, nominal_pairs, nominal_teeth
 
 Values = Mapping[str, Any]
-GearFlanks = Mapping[str, "GearFlank"]
-"""Compliance of both bodies by name."""
+GearFlanks = Mapping[str, Sequence["GearFlank"]]
+"""Compliance of both bodies by name, in each of `placement.nominal_pairs`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +60,7 @@ class PairExcitation:
     `backlash_added` (um) is the difference of the pair's backlash from that of the config. `answers` are
     those of the contact where the pair was put into contact. `tables` are those of the flanks where k depends
     on the load. `lubricated_teeth` are given where the pair is lubricated. `harmonics` is the table of stage
-    stiffness that may give single flanks a stiffness of their own.
+    stiffness that may give single flanks a stiffness of their own, None where no flank has one.
     """
 
     numbers: ToothNumbers
@@ -92,13 +97,17 @@ class PairExcitation:
         }
         return section
 
-    def quantities(self, force: float) -> dict[str, float]:
-        """Return the contact quantities of a machine: pressure and root stress at its largest mesh force.
+    def quantities(self, loads: FlankLoads, layout: Layout) -> dict[str, float]:
+        """Return the contact quantities of a machine: largest pressure and root stress of its flanks.
+
+        Each flank has the contact and the arm of its gear and side, at the largest force that it carries.
 
         Parameters
         ----------
-        force : float
-            Largest mesh force of the machine, N.
+        loads : FlankLoads
+            Loads of the machine's flanks.
+        layout : Layout
+            Layout of the machine.
 
         Returns
         -------
@@ -108,12 +117,21 @@ class PairExcitation:
         """
         if self.answers is None:
             return {}
-        answers, torque = self.answers, force * self.numbers.pinion_arm
+        answers, flanks = self.answers, self.answers.flanks
+        rows = [GEARS.index(gear) for gear in layout.contact_gears]
+        numbers = answers.numbers[[rows[gear] for _, gear in layout.meshes]].T.ravel()
+        forces = [loads.largest[numbers == number].max(initial=0.0) for number in range(len(flanks))]
+        # without any load the first contact stands for all
+        torques = [(flank, force * flank.arm) for flank, force in zip(flanks, forces, strict=True) if force]
+        torques = torques or [(flanks[0], 0.0)]
         return {
             ERROR_RANGE: 1e6 * answers.error_range,
             ERROR_HARMONIC: 1e6 * answers.error_harmonic,
-            PRESSURE: 1e-6 * answers.pressure.at(torque),
-            **{ROOTS[body]: 1e-6 * largest(torque) for body, largest in answers.roots.items()},
+            PRESSURE: 1e-6 * float(np.max([flank.pressure.at(torque) for flank, torque in torques])),
+            **{
+                ROOTS[body]: 1e-6 * max(flank.roots[body](torque) for flank, torque in torques)
+                for body in flanks[0].roots
+            },
         }
 
 
@@ -121,8 +139,8 @@ Meshes = Callable[[Values], PairExcitation]
 """The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""
 
 
-Tensions = Mapping[str, PassingTension]
-"""By body."""
+Tensions = Mapping[str, Sequence[PassingTension]]
+"""By body, in each of `placement.nominal_pairs`."""
 
 CACHED_PAIRS = 16
 """Number of pairs that are remembered: samples of one block of Saltelli's design share theirs."""
@@ -130,11 +148,15 @@ KEPT_BODIES = 4
 """Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
 
 
-def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None" = None) -> Meshes:
+def meshes_in_contact(
+    pair: Values, flanks: GearFlanks, gears: Sequence[str], rub: "ReduceTeeth | None" = None
+) -> Meshes:
     """Return a function that solves the contact of tooth pairs, and keeps the last CACHED_PAIRS of them.
 
-    Pairs with the nodes of the nominal pair start from its solved contact. The function raises the errors
-    that a config gets for a pair that cannot be built or solved.
+    Spur teeth are solved on the upper gear's drive flank alone, which stands for all; other teeth on every
+    flank of the machine that differs, each with its own stiffness. Pairs with the nodes of the nominal pair
+    start from its solved contact. The function raises the errors that a config gets for a pair that cannot be
+    built or solved.
 
     Parameters
     ----------
@@ -142,6 +164,8 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         Sections tooth_pair, mesh, contact and mesh_stiffness of the config.
     flanks : GearFlanks
         Compliance of both bodies of this pair by name.
+    gears : Sequence[str]
+        Gears of the machine, of `upper` and `lower`.
     rub : ReduceTeeth or None
         Function that reduces the contact of a lubricated pair; None without lubrication.
 
@@ -153,24 +177,35 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
     """
     backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
     plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
-    bodies, own_nodes = _bodies(pair, flanks), _nodes(pair["tooth_pair"])
+    bodies, own_nodes = _bodies(pair, flanks, gears), _nodes(pair["tooth_pair"])
+
+    def solve(
+        section: ToothPair, compliances: Sequence[PairFlanks], known_contacts: Sequence[KnownContact | None]
+    ) -> ContactAnalysis:
+        """Solve the contact of the flanks of a pair that differ, near `known_contacts`."""
+        design = pair_design(section)
+        has_own_flanks = not design.is_spur
+        return contact_analysis(
+            design, materials(section), compliances, plan, has_own_flanks, known_contacts, gears
+        )
 
     @cache
-    def nominal() -> KnownContact | None:
-        """Return solved contact of the nominal pair, from which similar pairs start; None where it cannot
-        be solved.
+    def nominal() -> list[KnownContact | None]:
+        """Return solved contact of the nominal pair, from which similar pairs start, for each pair of
+        bodies; nothing where it cannot be solved.
         """
         section = ToothPair.of_config(pair["tooth_pair"])
         try:
             compliances, _ = bodies(pair["tooth_pair"], section)
-            analysis = contact_analysis(
-                pair_design(section), materials(section), [compliances], plan, every_flank=False
-            )
+            analysis = solve(section, compliances, ())
         except FacegearError:
-            return None
-        flanks_of_it, normal_arm = analysis.models[0].flanks, analysis.models[0].design.normal_arm
+            return []
         positions = even_positions(plan.positions)
-        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, normal_arm)
+        contact_by_teeth: dict[PairDesign, KnownContact | None] = {}
+        for model, (results, _) in zip(analysis.models, analysis.results, strict=True):
+            contact = known_contact(results, positions, model.flanks.pinion.shape, model.design.normal_arm)
+            contact_by_teeth.setdefault(nominal_teeth(model.design), contact)
+        return [contact_by_teeth.get(teeth) for teeth in nominal_pairs(pair_design(section), gears)]
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
@@ -181,16 +216,11 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
         section = parse(ToothPair, values, "this pair")
         backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
         compliances, tensions = bodies(values, section)
-        start_contact = nominal() if _nodes(values) == own_nodes else None
-        analysis = contact_analysis(
-            pair_design(section),
-            materials(section),
-            [compliances],
-            plan,
-            every_flank=False,
-            known_contact=start_contact,
-        )
-        curve = curve_from_contact(analysis.ltca[0], request)
+        analysis = solve(section, compliances, nominal() if _nodes(values) == own_nodes else ())
+        curve, other_flanks = curve_from_contact(analysis.ltca[0], request), analysis.other_flanks
+        harmonics = None
+        if len(other_flanks):
+            harmonics = stiffness_from_contact(analysis.ltca[0], request, other_flanks).harmonics
         numbers = ToothNumbers.of_config(values)
         return PairExcitation(
             numbers=numbers,
@@ -198,7 +228,8 @@ def meshes_in_contact(pair: Values, flanks: GearFlanks, rub: "ReduceTeeth | None
             unloaded_error=curve.error,
             backlash_added=backlash_increase,
             answers=_answers(analysis, tensions, numbers, curve.table, request),
-            lubricated_teeth=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
+            lubricated_teeth=rub(analysis.ltca[0], analysis.stored_pressure, section) if rub else None,
+            harmonics=harmonics,
         )
 
     return lambda values: solve_mesh(json.dumps(values, sort_keys=True))
@@ -219,31 +250,38 @@ def _answers(
     """Return loaded transmission error, contact pressure and root stress of a pair from its contact.
 
     The error (positions,) m is that without load plus mesh force over average stiffness, at the torque of
-    the request. Pressure and root stress are functions of torque.
+    the request. Pressure and root stress are functions of torque, for each contact that differs.
     """
     assert request.torque is not None
-    torque, ltca = request.torque, analysis.ltca[0]
+    torque, designs = request.torque, [model.design for model in analysis.models]
     approach = torque / numbers.pinion_arm / stiffness.at(torque, "average")
-    error = 1e-6 * unloaded_samples(ltca) + approach
-    roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
-    return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)
+    error = 1e-6 * unloaded_samples(analysis.ltca[0]) + approach
+    bodies = nominal_pairs(designs[0])
+    flanks = []
+    for number, (design, ltca) in enumerate(zip(designs, analysis.ltca, strict=True)):
+        row = bodies.index(nominal_teeth(design))
+        roots = {body: tension[row].under(analysis.loads, number) for body, tension in tensions.items()}
+        arm = numbers.pinion_arm * (design.normal_arm / designs[0].normal_arm)
+        flanks.append(FlankAnswers(arm, contact_pressure(contact_summary(ltca)), roots))
+    return PairAnswers(error, tuple(flanks), analysis.numbers)
 
 
 def _bodies(
-    pair: Values, flanks: GearFlanks
-) -> Callable[[Values, ToothPair], tuple[tuple[GearFlank, GearFlank], Tensions]]:
+    pair: Values, flanks: GearFlanks, gears: Sequence[str]
+) -> Callable[[Values, ToothPair], tuple[Sequence[PairFlanks], Tensions]]:
     """Return a function that gives the compliance of both bodies of a pair, and the root stress of those
     with gauges.
 
-    It takes plain values and section of the pair. Compliances are kept by the values that decide the
-    nodes, at most those of `flanks` and KEPT_BODIES others. With the same nodes they are scaled by 1/E,
-    which is exact. It raises ConfigError for a pair whose contact the mesh cannot resolve.
+    It takes plain values and section of the pair, and has both for each of `placement.nominal_pairs`.
+    Compliances are kept by the values that decide the nodes, at most those of `flanks` and KEPT_BODIES
+    others. With the same nodes they are scaled by 1/E, which is exact. It raises ConfigError for a pair whose
+    contact the mesh cannot resolve.
     """
     start = ToothPair.of_config(pair["tooth_pair"])
     mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
     cache_by_nodes = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
 
-    def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
+    def bodies(values: Values, section: ToothPair) -> tuple[Sequence[PairFlanks], Tensions]:
         """Return the compliance of pinion and gear of a pair, and the root stress by body, from the cache
         or solved.
         """
@@ -251,8 +289,10 @@ def _bodies(
         if key not in cache_by_nodes:
             setup = contact_setup(section, mesh, contact)
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
-            compliances: dict[str, GearFlank] = {
-                body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+            compliances: dict[str, Sequence[GearFlank]] = {
+                body: gear_flanks(
+                    setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan, gears
+                )
                 for body in BODIES
             }
             if len(cache_by_nodes) > KEPT_BODIES:
@@ -263,10 +303,10 @@ def _bodies(
             [material.young_modulus for material in materials(pair_section)] for pair_section in (of, section)
         )
         first, second = (
-            compliances[body] if before == after else compliances[body].softer(before / after)
+            [flank if before == after else flank.softer(before / after) for flank in compliances[body]]
             for body, before, after in zip(BODIES, *moduli, strict=True)
         )
-        return (first, second), tensions
+        return list(zip(first, second, strict=True)), tensions
 
     return bodies
 
@@ -276,7 +316,11 @@ def _tensions(flanks: GearFlanks) -> Tensions:
 
     It does not depend on Young's modulus.
     """
-    return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
+    return {
+        body: [PassingTension.of_flank(body, flank) for flank in of_body]
+        for body, of_body in flanks.items()
+        if of_body[0].gauges
+    }
 
 
 def _nodes(tooth_pair: Values) -> str:

@@ -16,7 +16,7 @@ from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.options import ContactOptions
 from facegear.contact.pattern import FILLET_CONTACT
 from facegear.contact.position import LoadedPosition
-from facegear.contact.summary import StudiedContact, join_flanks, study_table
+from facegear.contact.summary import StudiedContact, study_table
 from facegear.contact.teeth import ContactSide
 from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
 from facegear.errors import FacegearError
@@ -84,29 +84,17 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     -------
     dict[str, Any]
         Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`; `ltca` and `by_torque` of
-        the upper gear's drive flank, and `pressure` of spur teeth as well. Table `ltca_by_flank`: the columns
-        STIFFNESS_COLUMNS of `ltca` for the other flanks that differ from it by their design, by gear and
-        flank; without rows for spur teeth.
+        the upper gear's drive flank, and `pressure` of spur teeth as well. Table `ltca_by_flank`:
+        `ContactAnalysis.other_flanks`.
     """
     return {
         "ltca": analysis.ltca[0],
-        "ltca_by_flank": _other_flanks(analysis),
+        "ltca_by_flank": analysis.other_flanks,
         "by_torque": analysis.by_torque[0],
         "by_flank": analysis.by_flank,
         "pressure": analysis.stored_pressure,
         "loads": analysis.loads,
     }
-
-
-STIFFNESS_COLUMNS = ("torque_n_m", "position", "k_average_n_per_m", "k_local_n_per_m", "interference_um")
-"""Columns of table `ltca` from which the stiffness of a flank follows."""
-
-
-def _other_flanks(analysis: ContactAnalysis) -> pd.DataFrame:
-    """Return table `ltca_by_flank` of `contents`."""
-    first, *further = (table[list(STIFFNESS_COLUMNS)] for table in analysis.ltca)
-    numbers = np.zeros_like(analysis.numbers) if analysis.is_spur else analysis.numbers
-    return join_flanks([first.iloc[:0], *further], numbers)[[*STIFFNESS_COLUMNS, "gear", "flank"]]
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:

@@ -12,8 +12,9 @@ import facegear
 from facegear.build.plans import contact_plan
 from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
+from facegear.contact.analysis import STIFFNESS_COLUMNS
 from facegear.contact.gear_flank import from_arrays, gear_flank, to_arrays
-from facegear.pipeline.stages.contact import STIFFNESS_COLUMNS, contents
+from facegear.pipeline.stages.contact import contents
 from facegear.pipeline.stages.strength import root_contents
 from facegear.quantities import BODIES
 from facegear.schema.base import parse
@@ -109,16 +110,10 @@ def test_flanks_with_a_stiffness_of_their_own_are_stored_with_their_contact(kind
     design = pair(ToothPair.of_config(facegear.load(kind).values["tooth_pair"])).design
     zeros = pd.DataFrame(np.zeros((2, len(STIFFNESS_COLUMNS))), columns=list(STIFFNESS_COLUMNS))
     tables = [zeros.assign(k_average_n_per_m=number * 1e8) for number in (1.0, 2.0, 3.0, 4.0)]
-    found = SimpleNamespace(
-        ltca=tables,
-        by_torque=tables,
-        by_flank=tables[0],
-        stored_pressure={},
-        loads={},
-        numbers=np.array([[0, 1], [2, 3]]),
-        is_spur=design.is_spur,
-    )
-    table = contents(found)["ltca_by_flank"]
+    model = SimpleNamespace(design=design)
+    found = analysis.ContactAnalysis(4 * [model], [], np.array([[0, 1], [2, 3]]))
+    vars(found)["ltca"] = tables
+    table = found.other_flanks
     means = table.groupby(["gear", "flank"])["k_average_n_per_m"].mean().to_dict()
     every = {("upper", "back"): 2e8, ("lower", "drive"): 3e8, ("lower", "back"): 4e8}
     assert means == (every if count else {}) and len(table) == 2 * count

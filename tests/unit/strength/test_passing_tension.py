@@ -73,6 +73,18 @@ def test_of_a_single_torque_stress_is_that_of_the_gauges_too():
         assert found(torque) == pytest.approx(down_the_fillet(full.at_torque(torque)).max(), rel=1e-12)
 
 
+def test_loads_of_another_flank_with_more_nodes_beside_change_nothing():
+    draw = np.random.default_rng(4)
+    given, loads = flank(draw), forces(draw)
+    count = len(loads["variant"])
+    both = loads | {name: np.tile(loads[name], 2) for name in ("torque_n_m", "position")}
+    both |= {"variant": np.repeat([0, 1], count), "pinion_case": loads["pinion_case"] + count}
+    both |= {"nodes": np.asarray(loads["nodes"]) + 7}
+    tension = PassingTension.of_flank("pinion", given)
+    for torque in (200.0, 333.0):
+        assert tension.under(both, 1)(torque) == tension.under(loads)(torque)
+
+
 def test_a_unit_force_makes_no_more_than_its_bound_anywhere_in_the_plane():
     given = flank(np.random.default_rng(5))
     tension = PassingTension.of_flank("pinion", given)

@@ -67,7 +67,7 @@ def test_no_compliance_is_computed_for_a_sample_and_pairs_that_are_alike_are_sol
     """The nominal pair first, once: it says where the contact of the others is sought."""
     gearbox = machine(*BOTH, cause("young", YOUNG, -6.0), cause("speed", "dynamics.speed_rpm", 0.0, 100.0))
     solved = []
-    monkeypatch.setattr(in_contact, "gear_flank", lambda *_: pytest.fail("compliance"))
+    monkeypatch.setattr(in_contact, "gear_flanks", lambda *_: pytest.fail("compliance"))
     analysis = in_contact.contact_analysis
     monkeypatch.setattr(
         in_contact,
@@ -102,7 +102,7 @@ def test_what_the_assembly_adds_to_the_backlash_counts_for_every_mesh():
     gearbox = machine(cause("shim", "tooth_pair.assembly.gear_axial_um", 20.0)).with_values(own)
     needs = stage_needs("tolerances_chunk", gearbox.values)
     flanks = stored_flanks(gearbox._chain.arguments("tolerances_chunk")["flanks"])
-    mesh = in_contact.meshes_in_contact(needs["pair"], flanks)
+    mesh = in_contact.meshes_in_contact(needs["pair"], flanks, ["upper", "lower"])
     shifted = {**needs["pair"]["tooth_pair"]}
     shifted["assembly"] = {**shifted["assembly"], "gear_axial_um": 20.0}
     machine_section = mesh(shifted).in_machine(needs["transmission"])
@@ -184,7 +184,7 @@ def searched(**section):
 
 
 def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):
-    monkeypatch.setattr(in_contact, "gear_flank", lambda *_: pytest.fail("compliance"))
+    monkeypatch.setattr(in_contact, "gear_flanks", lambda *_: pytest.fail("compliance"))
     found = searched().search()
     designs = found.designs()
     assert (designs["error"] != "").sum() == 0 and designs["crowning"].nunique() > 1
@@ -204,9 +204,9 @@ def test_a_variable_that_changes_a_body_has_it_condensed_anew_and_once(monkeypat
 
     def made(design, body, *_):
         asked.append((body, design.pinion.teeth, design.pinion.width))
-        return nominal[body]
+        return [nominal[body]]
 
-    monkeypatch.setattr(in_contact, "gear_flank", made)
+    monkeypatch.setattr(in_contact, "gear_flanks", made)
     sizes = {"variables": [variable], "population": 4, "generations": 1}
     objectives = [{"name": "pressure", "largest_of": ["pressure"]}]
     designs = searched(objectives=objectives, **sizes).search().designs()
