@@ -26,7 +26,7 @@ POSE = (
     "beyond the deflection of the mesh"
 )
 """Caption of the table of poses."""
-SAME = 1e-6
+FORCE_TOLERANCE = 1e-6
 """Change of a mesh force over the largest one to which poses and forces are iterated."""
 LEAVING_COLUMNS = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
@@ -181,7 +181,7 @@ def _force(meshes: pd.DataFrame) -> str:
     """
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     row = (after - before).abs().idxmax()
-    if abs(after[row] - before[row]) < SAME * before.max():
+    if abs(after[row] - before[row]) < FORCE_TOLERANCE * before.max():
         return "No mesh force changes."
     return (
         f"The force of {meshes['mesh'][row]} changes most, from {format_number(before[row], 4)} N to "
