@@ -22,10 +22,12 @@ POSE_COLUMNS = (
 """Columns of the table of meshes."""
 POSE = (
     "Every mesh in full. offset, axial shift, shaft angle: errors of assembly that the motions of both "
-    "bodies amount to; outward: how far they move the unloaded contact; closing: what the flanks close "
+    "bodies amount to; outward: shift of the pinion along its axis; closing: what the flanks close "
     "beyond the deflection of the mesh"
 )
 """Caption of the table of poses."""
+FORCE_TOLERANCE = 1e-6
+"""Change of a mesh force over the largest one to which poses and forces are iterated."""
 LEAVING_COLUMNS = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
     "of the face"
@@ -175,10 +177,12 @@ def _changes(loaded_meshes: pd.DataFrame) -> str:
 
 def _force(meshes: pd.DataFrame) -> str:
     """Say which mesh force magnitude (N) the pose changes most, from column force_as_assembled_n to
-    force_n.
+    force_n, or that none changes, as where torques alone decide the forces.
     """
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     row = (after - before).abs().idxmax()
+    if abs(after[row] - before[row]) < FORCE_TOLERANCE * before.max():
+        return "No mesh force changes."
     return (
         f"The force of {meshes['mesh'][row]} changes most, from {format_number(before[row], 4)} N to "
         f"{format_number(after[row], 4)} N."

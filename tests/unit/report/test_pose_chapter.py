@@ -53,6 +53,13 @@ def test_names_of_meshes_keep_their_capitals():
     assert "At 122 % of the torque the contact of engine A/upper leaves" in text
 
 
+def test_forces_that_torques_alone_decide_are_not_said_to_change():
+    """One face gear: the force changed most, from 12,610 N to 12,610 N."""
+    still = MESHES.assign(force_as_assembled_n=MESHES["force_n"] * (1.0 + 1e-13))
+    text = pose_text(tables(meshes=still))
+    assert "No mesh force changes." in text and "changes most" not in text
+
+
 def test_a_contact_beyond_the_end_is_not_called_near_it():
     beyond = MESHES.assign(to_outer_end_mm=[-0.4, 8.0, 23.9])
     text = pose_text(tables(meshes=beyond))
