@@ -348,9 +348,11 @@ def first_machine(wishes: MachineWishes) -> FirstMachine:
     require_wishes(wishes)
     require_room(wishes, choose_teeth(wishes.teeth).design)
     if not is_spur(wishes):
-        other = _machine(Draft(wishes))
-        expectations = other_teeth_lines(other.draft, other.bearings, other.split, other.loads[1])
-        return FirstMachine(other.draft.text(other.bearings, other.loads), tuple(expectations))
+        candidate = _machine(Draft(wishes))
+        expectations = other_teeth_lines(
+            candidate.draft, candidate.bearings, candidate.split, candidate.loads[1]
+        )
+        return FirstMachine(candidate.draft.text(candidate.bearings, candidate.loads), tuple(expectations))
     best = _machine(Draft(wishes))
     if wishes.shaper_teeth is None:
         for more_shaper_teeth in MORE_SHAPER_TEETH[1:]:

@@ -214,18 +214,18 @@ def read_nodes(path: Path) -> tuple[Integers, Array, list[str]]:
     return nodes, numbers[:, 1:], patches
 
 
-def _real(array: AnyArray, what: str) -> Array:
+def _real(array: AnyArray, quantity: str) -> Array:
     """Return an array as real numbers; refuse complex ones and texts by the word for what they are."""
     if array.dtype.kind not in "iuf":
-        raise MatrixFault(f"{what} must be real numbers, not {array.dtype}")
+        raise MatrixFault(f"{quantity} must be real numbers, not {array.dtype}")
     return np.asarray(array, float)
 
 
-def _whole_numbers(array: AnyArray, what: str) -> Integers:
+def _whole_numbers(array: AnyArray, quantity: str) -> Integers:
     """Return an array as whole numbers; refuse fractions, and numbers that are not finite."""
-    numbers = _real(array, what)
+    numbers = _real(array, quantity)
     if not np.isfinite(numbers).all() or (numbers != np.floor(numbers)).any():
-        raise MatrixFault(f"{what} must be whole numbers")
+        raise MatrixFault(f"{quantity} must be whole numbers")
     return numbers.astype(np.int64)
 
 
