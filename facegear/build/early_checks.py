@@ -82,7 +82,7 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
         return EarlyFindings((), (), ())
     design = pair_design(ToothPair.of_config(values["tooth_pair"]))
     from_contact = values["mesh_stiffness"]["source"] != "harmonics"
-    findings = _meshing_findings(design, from_contact)
+    geometry = _meshing_findings(design, from_contact)
     machine_values = values["transmission"]
     has_lower_gear = machine_values is not None and "lower" in machine_values["face_gears"]
     lower = other_lower_gear(design) if has_lower_gear else None
@@ -92,13 +92,13 @@ def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
             tuple(f"lower gear: {line}" for line in lines)
             for lines in (of_lower.failures, of_lower.remarks, of_lower.facts)
         )
-        findings = EarlyFindings(
-            findings.failures + failures, findings.remarks + remarks, findings.facts + facts
+        geometry = EarlyFindings(
+            geometry.failures + failures, geometry.remarks + remarks, geometry.facts + facts
         )
-    if not findings.facts:
-        return findings
+    if not geometry.facts:
+        return geometry
     unrated, beyond = _rating(values, design)
-    return replace(findings, failures=(*findings.failures, *unrated), remarks=(*findings.remarks, *beyond))
+    return replace(geometry, failures=(*geometry.failures, *unrated), remarks=(*geometry.remarks, *beyond))
 
 
 def _meshing_findings(design: PairDesign, from_contact: bool) -> EarlyFindings:
