@@ -146,6 +146,7 @@ def ground_loads(machine: Machine, equilibrium: Equilibria) -> Array:
         if body not in seats:
             axes, point = body_axes(machine.layout, body)
             total += about_origin(point, np.append(axes.T @ force, np.zeros(3)))
+    total[3:] += _moments_on_ground(machine, equilibrium)
     if line is None:
         return total
     loads = shaft_bearing_loads(
@@ -163,6 +164,21 @@ def ground_loads(machine: Machine, equilibrium: Equilibria) -> Array:
             axes, point = body_axes(machine.layout, body, distance)
             total += about_origin(point, np.append(axes.T @ load[:3], axes[:2].T @ load[3:]))
     return total
+
+
+def _moments_on_ground(machine: Machine, equilibrium: Equilibria) -> Array:
+    """Return the moments (3,), N m, by which meshes would tilt the pinions that the ground holds upright."""
+    assert machine.casing is not None
+    layout, line, moments = machine.layout, machine.drive_line, np.zeros(3)
+    if not layout.meshes_tilt_pinions:
+        return moments
+    forces = equilibrium.flank_forces[0].reshape(2, -1)
+    for mesh, (pinion, gear) in enumerate(layout.meshes):
+        if pinion in machine.casing.bearing_seats or (line is not None and pinion in line.tilting):
+            continue
+        tilting = np.array([frame.moment[:2] for frame in layout.flank_frames[gear]])
+        moments -= body_axes(layout, pinion)[0][:2].T @ (forces[:, mesh] @ tilting)
+    return moments
 
 
 def sharing_table(machine: Machine, equilibrium: Equilibria) -> pd.DataFrame:

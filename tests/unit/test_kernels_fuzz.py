@@ -18,6 +18,7 @@ RECORDED = (
     "tests/unit/motion/test_motion_kernels.py",
     "tests/unit/motion/test_load_dependent_motion.py",
     "tests/unit/motion/test_dynamics_convergence.py",
+    "tests/unit/motion/test_moving_places.py",
 )
 CALLS = 150
 """Changed calls of each kernel; `python -m validation.kernels_fuzz` makes more of them."""

@@ -110,7 +110,7 @@ def test_a_casing_set_free_turns_its_energy_into_heat():
     "analytic",
     "work of the meshes against the heat of bearings, casing and meshes",
     capability="casing_response",
-    module="facegear.motion.steady_state.simulate",
+    module="facegear.machine.casing_response",
 )
 def test_work_of_the_meshes_is_heat_of_bearings_casing_and_meshes(model, steady):
     machine, linear = model.machine, model.machine.linear

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -138,21 +137,19 @@ def multiplicities(modes):
 
 
 def table_lines() -> Iterator[str]:
-    """Orders, frequency, multiplicity and class by both, orders that are alike in one row."""
-    columns = [cells(modes) for modes in both_modes()]
-    rows = list(zip(*columns, strict=True))
-    edges = [0] + [k for k in range(1, len(rows)) if rows[k] != rows[k - 1]] + [len(rows)]
-    for start, stop in pairwise(edges):
-        orders = str(stop) if stop == start + 1 else f"{start + 1}-{stop}"
-        yield f"| {orders} | {' | '.join(rows[start])} |"
+    """Frequencies of both by the class of their modes, with the multiplicity of those that repeat."""
+    printed, geometric = (frequencies_by_class(modes) for modes in both_modes())
+    for kind in ("pinion", "face gear", "pinion coupled face gear"):
+        yield f"| {kind} | {printed.get(kind, 'none')} | {geometric.get(kind, 'none')} |"
 
 
-def cells(modes):
-    names = name_modes(LAYOUT, lumped_model(LAYOUT), modes)
+def frequencies_by_class(modes):
+    """Return the text of a cell by class."""
+    names, cells = name_modes(LAYOUT, lumped_model(LAYOUT), modes), {}
     for start, stop in modes.groups:
-        for order in range(start, stop):
-            cell = f"{modes.frequencies[order]:.1f} | {stop - start} | {names[order].mode_class.value}"
-            yield cell
+        cell = f"{modes.frequencies[start]:.1f}" + (f" ({stop - start})" if stop > start + 1 else "")
+        cells.setdefault(names[start].mode_class.value, []).append(cell)
+    return {kind: ", ".join(frequencies) for kind, frequencies in cells.items()}
 
 
 def test_bearings_with_clearance_vibrate_along_and_across_their_load_as_they_are_pressed():

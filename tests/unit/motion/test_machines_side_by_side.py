@@ -20,6 +20,7 @@ from facegear.machine.imperfections import perfect
 from facegear.machine.kinematics import GEOMETRIC, PRINTED_KINEMATICS
 from facegear.machine.machine import FlankTables, OpenFlanks
 from facegear.meshing.load_dependent import load_dependent_law
+from facegear.meshing.moving_law import moving_law
 from facegear.meshing.power import PowerLaw
 from facegear.motion.integrator.integrator import Integrator
 from facegear.motion.requests import WIDTH, RunRequest, _groups, run_many, run_stretches
@@ -31,6 +32,12 @@ SAME = 1e-9
 def loaded_in_turn(speed):
     """An oscillator whose load has three harmonics."""
     return one_degree(0.1, load=((0.0, 0.02, 0.0, 0.01), (0.1, 0.05 * speed**2, 0.03, 0.0)))
+
+
+def moved_in_its_cycle():
+    """An oscillator whose motion shifts its place in the cycle of its stiffness."""
+    steady = one_degree(0.1, stiffness=((0.0, 0.2), (1.0, 0.1)))
+    return replace(steady, law=moving_law(steady.law, 1), phase_shifts=np.array([[0.3]]))
 
 
 PUSH_ONLY = one_degree(0.1, contact_damping=0.2, push_only=True)
@@ -76,6 +83,7 @@ OSCILLATORS = {
     "stiffness in pieces": (IN_PIECES, 0.8),
     "oscillator on a table": (ON_A_TABLE, 0.8),
     "oscillator on a power law": (replace(one_degree(0.1), law=PowerLaw(depth=0.2)), 0.8),
+    "oscillator that moves in its cycle": (moved_in_its_cycle(), 0.8),
 }
 
 
