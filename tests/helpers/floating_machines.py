@@ -124,3 +124,18 @@ class ByHand:
         )
         pull -= (self.damping + self.gyroscopic) @ speed
         return np.concatenate([speed, pull / self.mass])
+
+    def energy(self, t, moved, speed):
+        """Kinetic and elastic energy of a machine whose law is linear."""
+        stiffness, over, *_ = self.flanks(t, moved, speed)
+        elastic = 0.5 * (moved @ self.spring @ moved + stiffness @ over**2)
+        return 0.5 * self.mass @ speed**2 + elastic
+
+
+def motion_at(run, basis, omega, phases, step):
+    """Return motions and speeds of all coordinates at phases of a recorded run, in its steps."""
+    powers = np.arange(run.coordinates.shape[1])
+    ahead = (phases - run.starts[step])[:, None]
+    at = np.einsum("kp,kpn->kn", ahead**powers, run.coordinates[step])
+    rate = np.einsum("kp,kpn->kn", powers[1:] * ahead ** (powers[1:] - 1), run.coordinates[step][:, 1:])
+    return at @ basis.T, omega * rate @ basis.T

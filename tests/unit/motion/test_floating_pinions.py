@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from floating_machines import KINDS, MESH_DAMPING, ByHand, make_floating_machine
+from floating_machines import KINDS, MESH_DAMPING, ByHand, make_floating_machine, motion_at
 from recorded_motion import record
 from scipy.integrate import solve_ivp
 from scipy_motions import kicked
@@ -61,22 +61,12 @@ def test_the_energy_of_floating_and_tilting_pinions_is_balanced(name, moving):
     run = record(model.system, omega, kicked(model, 0.05), 2, Settings(tolerance=1e-14))
     basis = model.reduction.basis
 
-    def motion(phases, step):
-        powers = np.arange(run.coordinates.shape[1])
-        ahead = (phases - run.starts[step])[:, None]
-        place = np.einsum("kp,kpn->kn", ahead**powers, run.coordinates[step])
-        rate = np.einsum("kp,kpn->kn", powers[1:] * ahead ** (powers[1:] - 1), run.coordinates[step][:, 1:])
-        return place @ basis.T, omega * rate @ basis.T
-
-    def energy(t, moved, speed):
-        stiffness, over, *_ = by_hand.flanks(t, moved, speed)
-        elastic = 0.5 * (moved @ by_hand.spring @ moved + stiffness @ over**2)
-        return 0.5 * by_hand.mass @ speed**2 + elastic
-
     phases, weights = run.quadrature(16)
     step = np.searchsorted(run.starts, phases, side="right") - 1
     work = np.zeros(4)
-    for phase, weight, moved, speed in zip(phases, weights / omega, *motion(phases, step), strict=True):
+    for phase, weight, moved, speed in zip(
+        phases, weights / omega, *motion_at(run, basis, omega, phases, step), strict=True
+    ):
         t = phase / omega
         stiffness, over, closing, by_place = by_hand.flanks(t, moved, speed)
         error_rate, growth = by_hand.law(t)[2], omega * by_place
@@ -87,7 +77,7 @@ def test_the_energy_of_floating_and_tilting_pinions_is_balanced(name, moving):
     last = run.starts[-1] + run.lengths[-1]
     ends = []
     for phase, number in ((0.0, 0), (last, -1)):
-        moved, speed = (part[0] for part in motion(np.array([phase]), [number]))
-        ends.append(energy(phase / omega, moved, speed))
+        moved, speed = (part[0] for part in motion_at(run, basis, omega, np.array([phase]), [number]))
+        ends.append(by_hand.energy(phase / omega, moved, speed))
     assert abs(work[3]) < 1e-12 * np.abs(work).max()
     assert abs(ends[1] - ends[0] - work.sum()) < 1e-8 * max(np.abs(work).max(), ends[0])

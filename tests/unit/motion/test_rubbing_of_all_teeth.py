@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from floating_machines import KINDS, MESH_DAMPING, ByHand, make_floating_machine
+from floating_machines import KINDS, MESH_DAMPING, ByHand, make_floating_machine, motion_at
 from public_casing import mount_public
 from recorded_motion import record
 from references import against, agrees
@@ -221,22 +221,12 @@ def test_power_in_less_power_out_less_friction_less_damping_changes_the_energy(n
     layout = machine.layout
     output = 4 * (len(layout.pinions) + layout.output) + 3
 
-    def motion(phases, step):
-        powers = np.arange(run.coordinates.shape[1])
-        ahead = (phases - run.starts[step])[:, None]
-        at = np.einsum("kp,kpn->kn", ahead**powers, run.coordinates[step])
-        rate = np.einsum("kp,kpn->kn", powers[1:] * ahead ** (powers[1:] - 1), run.coordinates[step][:, 1:])
-        return at @ basis.T, omega * rate @ basis.T
-
-    def energy(t, moved, speed):
-        stiffness, over, *_ = by_hand.flanks(t, moved, speed)
-        elastic = 0.5 * (moved @ by_hand.spring @ moved + stiffness @ over**2)
-        return 0.5 * by_hand.mass @ speed**2 + elastic
-
     phases, weights = run.quadrature(14)
     step = np.searchsorted(run.starts, phases, side="right") - 1
     sums = dict.fromkeys(("power", "friction", "damping", "law", "even"), 0.0)
-    for phase, weight, moved, speed in zip(phases, weights / omega, *motion(phases, step), strict=True):
+    for phase, weight, moved, speed in zip(
+        phases, weights / omega, *motion_at(run, basis, omega, phases, step), strict=True
+    ):
         t, tick = phase / omega, 1e-9
         stiffness, over, closing, _ = by_hand.flanks(t, moved, speed)
         growth = (by_hand.law(t + tick)[0] - by_hand.law(t - tick)[0]) / (2 * tick)
@@ -253,8 +243,8 @@ def test_power_in_less_power_out_less_friction_less_damping_changes_the_energy(n
         sums["law"] += weight * (0.5 * growth @ over**2 - force @ error_rate)
     ends = []
     for phase, number in ((0.0, 0), (run.starts[-1] + run.lengths[-1], -1)):
-        moved, speed = (part[0] for part in motion(np.array([phase]), [number]))
-        ends.append(energy(phase / omega, moved, speed))
+        moved, speed = (part[0] for part in motion_at(run, basis, omega, np.array([phase]), [number]))
+        ends.append(by_hand.energy(phase / omega, moved, speed))
     left = sums["power"] - sums["friction"] - sums["damping"] + sums["law"] - (ends[1] - ends[0])
     assert abs(sums["friction"]) > 1e-2 * abs(ends[1] - ends[0]) and sums["even"] > 0.0
     scale = abs(sums["friction"]) + abs(sums["damping"])
